@@ -1,0 +1,111 @@
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pagd import __version__
+from pagd.errors import InputError, Status
+from pagd.record import (
+    RECORD_NAME,
+    Meter,
+    Record,
+    read_record,
+    stage_folder,
+    versions,
+    write_record,
+)
+
+
+@pytest.fixture
+def record() -> Record:
+    return Record(
+        stage="mesh",
+        design_id="bending-1",
+        status=Status.mesh_failed,
+        reason="The mesher ran out of time.",
+        figures={"tets": np.int64(5), "volume_mm3": np.float64(1.5), "sizes": np.arange(2)},
+        configuration={"size_mm": 3.0},
+        versions=versions(2, ("numpy",)),
+        timings_s={"wall": 1.0, "cpu": 0.5},
+        peak_memory_MB=12.5,
+    )
+
+
+def test_record_round_trip(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path)
+    read = read_record(tmp_path)
+    assert read == replace(record, figures={"tets": 5, "volume_mm3": 1.5, "sizes": [0, 1]})
+    assert read.status is Status.mesh_failed
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"reason": None},
+        {"status": Status.ok},
+        {"design_id": "two words"},
+        {"timings_s": {"wall": 1.0}},
+        {"peak_memory_MB": -1.0},
+        {"versions": {"pagd": "1"}},
+        {"figures": {"bending_deg": float("nan")}},
+    ],
+)
+def test_a_record_that_breaks_the_rules_is_not_written(
+    record: Record, tmp_path: Path, change: dict[str, object]
+) -> None:
+    with pytest.raises(ValueError, match=r"record of stage 'mesh'|not JSON compliant"):
+        write_record(replace(record, **change), tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_reading_checks_the_schema(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path)
+    content = json.loads((tmp_path / RECORD_NAME).read_text())
+    for fault in ({"schema": 2}, {"status": "fine"}, {"extra": 1}):
+        (tmp_path / RECORD_NAME).write_text(json.dumps(content | fault))
+        with pytest.raises(InputError, match=r"not a record"):
+            read_record(tmp_path)
+
+
+def test_a_missing_record_is_an_input_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"record\.json"):
+        read_record(tmp_path)
+
+
+def test_stage_folder_replaces_only_a_stage(record: Record, tmp_path: Path) -> None:
+    with stage_folder(tmp_path / "mesh") as folder:
+        write_record(record, folder)
+    with stage_folder(tmp_path / "mesh") as folder:
+        write_record(replace(record, design_id="second"), folder)
+    assert read_record(tmp_path / "mesh").design_id == "second"
+
+
+def test_versions_name_pagd_python_and_libraries() -> None:
+    found = versions(3, ("numpy", "no-such-package"))
+    assert found["pagd"] == __version__
+    assert found["stage"] == 3
+    assert found["numpy"] == np.__version__
+    assert found["no-such-package"] is None
+
+
+def test_meter_counts_children_and_parts() -> None:
+    meter = Meter()
+    busy = "sum(range(3_000_000))"
+    with meter.part("child"):
+        subprocess.run([sys.executable, "-c", busy], check=True)
+    timings = meter.timings_s()
+    assert 0 < timings["child"] <= timings["wall"]
+    assert timings["cpu"] > 0.02
+
+
+def test_peak_memory_sees_what_was_allocated() -> None:
+    code = (
+        "import numpy; from pagd.record import Meter; a = Meter.peak_memory_MB();"
+        "b = numpy.ones(25_000_000); print(Meter.peak_memory_MB() - a)"
+    )
+    grown = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert float(grown.stdout) == pytest.approx(200, abs=20)
