@@ -1,0 +1,96 @@
+"""Triangulated input of the meshers: the body above the paper plane and the base below it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from pagd.errors import InputError
+from pagd.mesh.gmsh_session import gmsh_session
+from pagd.mesh.types import FloatArray, IntArray
+
+#: Points nearer than this share of the bounding box's diagonal are one point. OpenSCAD writes
+#: six significant digits, which is 5e-6 of the largest coordinate.
+RELATIVE_TOLERANCE = 1e-5
+
+_GMSH_TRIANGLE = 2
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Surface:
+    """Triangles with shared vertices: points (n, 3) in mm, triangles (m, 3) outward."""
+
+    points: FloatArray
+    triangles: IntArray
+
+    def volume(self) -> float:
+        """Return the enclosed volume in mm³ (of a closed surface)."""
+        a, b, c = (self.points[self.triangles[:, i]] for i in range(3))
+        return float(np.einsum("ij,ij->", np.cross(a, b), c) / 6.0)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SurfacePair:
+    """Watertight surfaces that share the paper plane.
+
+    body: all of the solid above the paper plane, the cavity as a void inside it.
+    base: the slab below the paper plane.
+    half: the pair is the half y ≥ 0 of an actuator that is symmetric in y; the cavity is then
+        open at y = 0.
+    """
+
+    body: Surface
+    base: Surface
+    half: bool = False
+
+    @classmethod
+    def from_stl(cls, body: Path, base: Path, half: bool = False) -> SurfacePair:
+        """Read both surfaces from STL files; InputError if one cannot be used."""
+        return cls(read_stl(body), read_stl(base), half)
+
+    def tolerance(self) -> float:
+        """Return the distance in mm below which two points of the pair are the same."""
+        points = np.vstack((self.body.points, self.base.points))
+        return RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(points, axis=0)))
+
+    def volume(self) -> float:
+        """Return the volume of the solid in mm³."""
+        return self.body.volume() + self.base.volume()
+
+
+def read_stl(path: Path) -> Surface:
+    """Read an STL file (text or binary); vertices are merged; InputError if it holds nothing."""
+    if not path.is_file():
+        raise InputError(f"The surface file {path} does not exist.")
+    try:
+        with gmsh_session() as gmsh:
+            gmsh.merge(str(path))
+            tags, coordinates, _ = gmsh.model.mesh.getNodes()
+            _, corners = gmsh.model.mesh.getElementsByType(_GMSH_TRIANGLE)
+    except Exception as error:
+        raise InputError(f"The surface file {path} is not a readable STL file: {error}.") from error
+    if len(corners) == 0:
+        raise InputError(f"The surface file {path} holds no triangles.")
+    order = np.argsort(tags)
+    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)[order]
+    triangles = np.searchsorted(tags[order], corners).astype(np.int64).reshape(-1, 3)
+    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
+    return merge_points(points, triangles, RELATIVE_TOLERANCE * extent)
+
+
+def merge_points(points: FloatArray, triangles: IntArray, tolerance: float) -> Surface:
+    """Merge points nearer than `tolerance`, drop triangles that collapse and unused points."""
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
+    _, label = connected_components(links, directed=False)
+    _, representative = np.unique(label, return_index=True)
+    merged = label.astype(np.int64)[triangles]
+    a, b, c = merged.T
+    kept = merged[(a != b) & (b != c) & (c != a)]
+    used, numbers = np.unique(kept, return_inverse=True)
+    return Surface(points[representative[used]], numbers.reshape(-1, 3).astype(np.int64))
