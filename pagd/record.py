@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import functools
 import importlib.metadata
-import importlib.resources
 import json
 import platform
 import resource
@@ -19,6 +17,7 @@ from typing import Any
 from pagd import __version__
 from pagd.errors import InputError, Status
 from pagd.files import replaced_folder, write_text
+from pagd.validation import check, faults
 
 __all__ = [
     "RECORD_NAME",
@@ -67,9 +66,9 @@ def write_record(record: Record, folder: Path) -> None:
     """
     content = record.as_dict()
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False, default=_plain)
-    fault = _fault(json.loads(text))
-    if fault is not None:
-        raise ValueError(f"record of stage '{record.stage}': {fault}")
+    found = list(faults(json.loads(text), "record"))
+    if found:
+        raise ValueError(f"record of stage '{record.stage}': {'; '.join(found)}")
     write_text(folder / RECORD_NAME, text + "\n")
 
 
@@ -86,9 +85,7 @@ def read_record(folder: Path) -> Record:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: not a readable record ({error}).") from error
-    fault = _fault(content)
-    if fault is not None:
-        raise InputError(f"{path}: not a record: {fault}.")
+    check(content, "record", f"{path}: not a record")
     del content["schema"]
     return Record(**{**content, "status": Status(content["status"])})
 
@@ -193,20 +190,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
     raise TypeError(f"{type(value).__name__} has no place in a record")
-
-
-@functools.cache
-def _schema() -> dict[str, Any]:
-    file = importlib.resources.files("pagd") / "schemas" / "record.schema.json"
-    schema: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    return schema
-
-
-def _fault(content: object) -> str | None:
-    """Return what breaks the schema, or None."""
-    import jsonschema
-
-    error = jsonschema.exceptions.best_match(
-        jsonschema.Draft202012Validator(_schema()).iter_errors(content)
-    )
-    return None if error is None else f"{error.json_path}: {error.message}"

@@ -1,0 +1,115 @@
+"""Designs with names: from a table (CSV), a file of one's own (YAML, JSON) or JSON text."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pagd.design import PARAMETERS, Design
+from pagd.design.model import as_number
+from pagd.documents import read_document
+from pagd.errors import InputError
+from pagd.validation import check, check_each
+
+__all__ = ["NamedDesign", "design_from", "read_designs"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NamedDesign:
+    """A design, its name (unique in a run: the design_id) and the table it comes from."""
+
+    name: str
+    origin: str
+    design: Design
+
+    @classmethod
+    def from_row(cls, row: Mapping[str, Any]) -> NamedDesign:
+        """Make one of a row that has passed the schema of designs, with name and origin."""
+        parameters = {key: row[key] for key in PARAMETERS}
+        design = Design.from_mapping(parameters)
+        return cls(name=row["name"], origin=row["origin"], design=design)
+
+    def as_json(self) -> str:
+        """Return it as one line of JSON with a fixed order of keys."""
+        return json.dumps({"name": self.name, "origin": self.origin, **self.design.as_dict()})
+
+
+def design_from(source: str) -> NamedDesign:
+    """Read one design from JSON text, or from a YAML or JSON file.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or describes no design.
+    """
+    given, file = read_document(source, "design")
+    # A file's name serves as the name of a design that has none.
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(file).stem).strip("-") or "design"
+    row = {"name": name, "origin": "own", **given}
+    check(row, "designs", f"design {file or row['name']}")
+    return NamedDesign.from_row(row)
+
+
+def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str, NamedDesign]:
+    """Read tables of designs: CSV with a column ``name`` and one a parameter.
+
+    Parameters
+    ----------
+    tables
+        Origin of the designs to the table's path.
+    checked
+        False leaves out the check against the schema, for tables that have passed it.
+
+    Returns
+    -------
+    dict
+        The designs by name, in the order of the tables.
+
+    Raises
+    ------
+    InputError
+        Naming the file, the row and every fault of it.
+    """
+    rows: dict[str, dict[str, Any]] = {}
+    for origin, path in tables.items():
+        rows |= _rows(Path(path), origin)
+    if checked:
+        check_each(rows, "designs")
+    return _by_name({where: NamedDesign.from_row(row) for where, row in rows.items()})
+
+
+def _rows(path: Path, origin: str) -> dict[str, dict[str, Any]]:
+    """Return the rows of a table by the place where they stand."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file, restkey="(no heading)", strict=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"table of designs {path}: cannot be read ({error}).") from None
+    # Row 1 of the file is the heading.
+    return {f"{path}, row {i}": _typed(row, origin) for i, row in enumerate(rows, start=2)}
+
+
+def _typed(row: Mapping[str, Any], origin: str) -> dict[str, Any]:
+    given = {key: value for key, value in row.items() if value not in ("", None)}
+    numbers = {key: _number(given[key]) for key in PARAMETERS if key in given}
+    return {"origin": origin, **given, **numbers}
+
+
+def _number(text: str) -> float | str:
+    # What is no number stays as it is, for the schema to refuse it by its name.
+    number = as_number(text)
+    return text if number is None else number
+
+
+def _by_name(designs: Mapping[str, NamedDesign]) -> dict[str, NamedDesign]:
+    found: dict[str, NamedDesign] = {}
+    for where, named in designs.items():
+        if named.name in found:
+            raise InputError(f"{where}: name = '{named.name}' must be unique, but is taken.")
+        found[named.name] = named
+    return found

@@ -1,0 +1,59 @@
+"""The configuration: checked against its schema, completed by defaults, split by stage."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+from pagd.documents import read_document
+from pagd.validation import check, defaults, schema
+
+__all__ = ["SECTIONS", "checked", "completed", "load", "part"]
+
+#: The sections of the configuration that each stage depends on, and no others.
+SECTIONS = {
+    "geometry": ("channel", "limits", "geometry"),
+    "repair": (),
+    "mesh": ("channel", "mesh"),
+    "solve": ("solve",),
+    "metrics": ("metrics",),
+    "figures": ("figures",),
+}
+
+Config = dict[str, Any]
+
+
+def load(source: str | None) -> Config:
+    """Return the completed configuration of a file or of JSON text; all defaults for None.
+
+    Raises
+    ------
+    InputError
+        Naming key, value and rule of every fault.
+    """
+    if source is None:
+        return completed({})
+    given, file = read_document(source, "configuration")
+    return checked(given, f"configuration {file}".strip())
+
+
+def checked(given: Mapping[str, Any], where: str) -> Config:
+    """Check a configuration and complete it by the defaults; ``InputError`` names the faults."""
+    check(dict(given), "config", where)
+    return completed(given)
+
+
+def completed(given: Mapping[str, Any]) -> Config:
+    """Return the configuration with the default for every key that ``given`` lacks."""
+    config: Config = copy.deepcopy(defaults(schema("config")))
+    for key, value in given.items():
+        # 'designs' is one value as a whole: to name other tables is to leave out the paper's.
+        merge = isinstance(value, Mapping) and key != "designs"
+        config[key] = {**config[key], **value} if merge else value
+    return config
+
+
+def part(config: Mapping[str, Any], stage: str) -> Config:
+    """Return the sections of a configuration that ``stage`` depends on."""
+    return {section: config[section] for section in SECTIONS[stage]}

@@ -1,0 +1,76 @@
+"""Tables of keys and values that a user hands over: as JSON text, or in a YAML or JSON file."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from pagd.errors import InputError
+
+__all__ = ["parse_yaml", "read_document"]
+
+
+def read_document(source: str, what: str) -> tuple[dict[str, Any], str]:
+    """Read a table of keys and values.
+
+    Parameters
+    ----------
+    source
+        JSON text (it begins with ``{``) or the name of a YAML or JSON file.
+    what
+        What it should be, for the message.
+
+    Returns
+    -------
+    tuple
+        The table, and the name of the file ('' for text).
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is no such table.
+    """
+    if source.lstrip().startswith("{"):
+        return _table(_parsed_json(source, what), what), ""
+    try:
+        content = parse_yaml(Path(source).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{what} {source}: cannot be read ({error}).") from None
+    except yaml.YAMLError as error:
+        place = " ".join(str(error).split())
+        raise InputError(f"{what} {source}: is neither YAML nor JSON ({place}).") from None
+    return _table(content, f"{what} {source}"), source
+
+
+def parse_yaml(text: str) -> Any:
+    """Return the content of YAML text, in which 1e-3 is a number; raises ``yaml.YAMLError``."""
+    return yaml.load(text, Loader=_Loader)
+
+
+def _parsed_json(text: str, what: str) -> Any:
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise InputError(f"{what}: the text is not JSON ({error}).") from None
+
+
+def _table(content: Any, what: str) -> dict[str, Any]:
+    if not isinstance(content, dict):
+        raise InputError(f"{what}: must be a table of keys and values.")
+    return content
+
+
+# The loader in C is eight times as fast; not every build of PyYAML has it.
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """YAML in which 1e-3 is a number, as in YAML 1.2 and in JSON; PyYAML asks for 1.0e-3."""
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"[-+]?[0-9]+(?:\.[0-9]*)?[eE][-+]?[0-9]+$"),
+    list("-+0123456789"),
+)

@@ -1,0 +1,141 @@
+"""Checks of documents against JSON schemas, with faults told in one sentence each."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import importlib.resources
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeAlias
+
+from pagd.documents import parse_yaml
+from pagd.errors import InputError
+
+__all__ = ["check", "check_each", "defaults", "faults", "schema"]
+
+Schema: TypeAlias = dict[str, Any]
+
+
+@functools.cache
+def schema(name: str) -> Schema:
+    """Return the schema ``name`` that comes with pagd: config, designs or record."""
+    file = importlib.resources.files("pagd") / "schemas" / f"{name}.schema.yaml"
+    found: Schema = parse_yaml(file.read_text(encoding="utf-8"))
+    return found
+
+
+def check(document: Any, name: str, where: str) -> None:
+    """Refuse a document that breaks the schema ``name``.
+
+    Raises
+    ------
+    InputError
+        One sentence: ``where``, then key, value and rule of every fault.
+    """
+    found = list(faults(document, name))
+    if found:
+        raise InputError(f"{where}: {'; '.join(found)}.")
+
+
+def check_each(documents: Mapping[str, Any], name: str) -> None:
+    """Check many documents, by the place that each stands in, against one schema."""
+    validator = _validator(name)
+    for where, document in documents.items():
+        # Most are sound: the slow search for the words only for those that are not.
+        if not validator.is_valid(document):
+            check(document, name, where)
+
+
+def faults(document: Any, name: str) -> Iterator[str]:
+    """Yield every fault of a document as ``key = value must …``, each once."""
+    seen: set[str] = set()
+    for error in _validator(name).iter_errors(document):
+        key = error.json_path.removeprefix("$").removeprefix(".")
+        sentence = _WORDS.get(error.validator, _other)(key, error)
+        if sentence not in seen:
+            seen.add(sentence)
+            yield sentence
+
+
+def defaults(of: Schema) -> Any:
+    """Return the document that the ``default`` entries of a schema describe."""
+    if "default" in of:
+        return of["default"]
+    return {key: defaults(part) for key, part in of.get("properties", {}).items()}
+
+
+def _value(key: str, error: Any) -> str:
+    return f"{key} = {error.instance!r}" if key else repr(error.instance)
+
+
+def _type(key: str, error: Any) -> str:
+    wanted = error.validator_value
+    kinds = [wanted] if isinstance(wanted, str) else wanted
+    return f"{_value(key, error)} must be {' or '.join(_KINDS[kind] for kind in kinds)}"
+
+
+_KINDS = {
+    "number": "a number",
+    "integer": "a whole number",
+    "string": "text",
+    "boolean": "true or false",
+    "object": "a table of keys and values",
+    "array": "a list",
+    "null": "empty",
+}
+
+
+def _bound(words: str) -> Callable[[str, Any], str]:
+    return lambda key, error: f"{_value(key, error)} must be {words} {error.validator_value}"
+
+
+def _enum(key: str, error: Any) -> str:
+    return f"{_value(key, error)} must be one of {', '.join(map(str, error.validator_value))}"
+
+
+def _unknown(key: str, error: Any) -> str:
+    known = list(error.schema.get("properties", {}))
+    return "; ".join(
+        f"{key}{'.' if key else ''}{name} is not a known key{_hint(name, known)}"
+        for name in error.instance
+        if name not in known
+    )
+
+
+def _hint(name: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(str(name), known, n=1)
+    return f" (did you mean {near[0]}?)" if near else f" (known are {', '.join(known)})"
+
+
+def _missing(key: str, error: Any) -> str:
+    lacking = [name for name in error.validator_value if name not in error.instance]
+    return f"{', '.join(lacking)} missing{f' in {key}' if key else ''}"
+
+
+def _pattern(key: str, error: Any) -> str:
+    return f"{_value(key, error)} must match {error.validator_value}"
+
+
+def _other(key: str, error: Any) -> str:
+    return f"{key}: {error.message}" if key else str(error.message)
+
+
+_WORDS: dict[str, Callable[[str, Any], str]] = {
+    "type": _type,
+    "enum": _enum,
+    "const": lambda key, error: f"{_value(key, error)} must be {error.validator_value!r}",
+    "minimum": _bound("at least"),
+    "maximum": _bound("at most"),
+    "exclusiveMinimum": _bound("greater than"),
+    "exclusiveMaximum": _bound("less than"),
+    "additionalProperties": _unknown,
+    "required": _missing,
+    "pattern": _pattern,
+}
+
+
+@functools.cache
+def _validator(name: str) -> Any:
+    import jsonschema
+
+    return jsonschema.Draft202012Validator(schema(name))
