@@ -11,7 +11,7 @@ _REPEATABLE: Mapping[str, float] = {
     "General.Terminal": 0,
     "General.NumThreads": 1,
     "Mesh.RandomSeed": 1,
-    # Take nothing from the user's home: .gmshrc and .gmsh-options would change results.
+    # Errors become exceptions instead of lines on the screen.
     "General.AbortOnError": 2,
 }
 
@@ -24,6 +24,7 @@ def gmsh_session(options: Mapping[str, float] | None = None) -> Iterator[Any]:
     """
     import gmsh
 
+    # Options in the user's home must not change results.
     gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         for key, value in {**_REPEATABLE, **(options or {})}.items():

@@ -14,10 +14,11 @@ def quadratic_mesh(points: FloatArray, tets: IntArray, surfaces: dict[str, IntAr
     sorted along the longest axis, which keeps what is near in space near in memory; points that
     belong to no tetrahedron are dropped.
     """
-    points, tets, surfaces = _compact(points, tets, surfaces)
-    edges, numbers = _edges(tets[:, TET_EDGES])
-    middle = points[edges].mean(axis=1)
-    keys = _edge_keys(edges, len(points))
+    points, tets, surfaces = compact(points, tets, surfaces)
+    pairs = np.sort(tets[:, TET_EDGES].reshape(-1, 2), axis=1)
+    keys, first, numbers = np.unique(
+        _edge_keys(pairs, len(points)), return_index=True, return_inverse=True
+    )
     offset = len(points)
 
     def upgraded(triangles: IntArray) -> IntArray:
@@ -26,8 +27,8 @@ def quadratic_mesh(points: FloatArray, tets: IntArray, surfaces: dict[str, IntAr
 
     return sort_along_axis(
         Mesh(
-            points=np.vstack((points, middle)),
-            tets=np.hstack((tets, offset + numbers)),
+            points=np.vstack((points, points[pairs[first]].mean(axis=1))),
+            tets=np.hstack((tets, offset + numbers.reshape(-1, 6))),
             surfaces={name: upgraded(faces) for name, faces in surfaces.items()},
         )
     )
@@ -50,22 +51,16 @@ def sort_along_axis(mesh: Mesh) -> Mesh:
     )
 
 
-def _compact(
+def compact(
     points: FloatArray, tets: IntArray, surfaces: dict[str, IntArray]
 ) -> tuple[FloatArray, IntArray, dict[str, IntArray]]:
+    """Drop points that belong to no tetrahedron; faces that use one get the number -1 there."""
     used = np.unique(tets)
     numbers = np.full(len(points), -1, dtype=np.int64)
     numbers[used] = np.arange(len(used))
     return points[used], numbers[tets], {name: numbers[f] for name, f in surfaces.items()}
 
 
-def _edges(pairs: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the distinct edges (k, 2), sorted, and the number of each edge in `pairs`."""
-    flat = np.sort(pairs.reshape(-1, 2), axis=1)
-    edges, numbers = np.unique(flat, axis=0, return_inverse=True)
-    return edges, numbers.reshape(pairs.shape[:-1]).astype(np.int64)
-
-
 def _edge_keys(edges: IntArray, size: int) -> IntArray:
-    """Return one number per sorted edge (…, 2), in the order of np.unique over the rows."""
+    """Return one number per sorted edge (…, 2)."""
     return np.asarray(edges[..., 0] * size + edges[..., 1])

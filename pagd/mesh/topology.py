@@ -7,9 +7,26 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from pagd.errors import InputError
 from pagd.mesh.types import TET_FACES, FloatArray, IntArray
 
 BoolArray = NDArray[np.bool_]
+
+
+def row_numbers(rows: IntArray) -> IntArray:
+    """Return a number (k,) for each row of (k, c) non-negative integers, equal for equal rows."""
+    numbers = rows[:, 0]
+    size = 1 + int(rows.max(initial=0))
+    # One column at a time, or the packed keys would overflow on large meshes.
+    for column in rows.T[1:]:
+        numbers = np.unique(numbers * size + column, return_inverse=True)[1]
+    return np.asarray(numbers, dtype=np.int64)
+
+
+def occurrences(rows: IntArray) -> IntArray:
+    """Return how often (k,) each row occurs among the rows (k, c) of non-negative integers."""
+    numbers = row_numbers(rows)
+    return np.asarray(np.bincount(numbers)[numbers])
 
 
 def all_faces(tets: IntArray) -> tuple[IntArray, IntArray]:
@@ -21,19 +38,18 @@ def all_faces(tets: IntArray) -> tuple[IntArray, IntArray]:
 def shared_faces(tets: IntArray) -> tuple[IntArray, IntArray]:
     """Return each face once, outward from its first owner, and its owners (k, 2).
 
-    The second owner is −1 for a face on the boundary. ValueError if a face has three owners.
+    The second owner is −1 for a face on the boundary. InputError if a face has three owners.
     """
     faces, owner = all_faces(tets)
-    order = np.lexsort(np.sort(faces, axis=1).T)
-    keys = np.sort(faces, axis=1)[order]
-    same = (keys[1:] == keys[:-1]).all(axis=1)
-    if (same[1:] & same[:-1]).any():
-        raise ValueError("three tetrahedra share one face")
-    first = np.concatenate(([True], ~same))
-    second = np.concatenate((owner[order][1:], [-1]))
-    paired = np.concatenate((same, [False]))
-    owners = np.column_stack((owner[order], np.where(paired, second, -1)))
-    return faces[order][first], owners[first]
+    numbers = row_numbers(np.sort(faces, axis=1))
+    if np.bincount(numbers).max() > 2:
+        raise InputError("The mesh has faces shared by three tetrahedra.")
+    order = np.argsort(numbers, kind="stable")
+    first = np.concatenate(([True], np.diff(numbers[order]) > 0))
+    owners = np.full((int(first.sum()), 2), -1, dtype=np.int64)
+    owners[:, 0] = owner[order[first]]
+    owners[numbers[order[~first]], 1] = owner[order[~first]]
+    return faces[order[first]], owners
 
 
 def boundary_faces(tets: IntArray) -> IntArray:
@@ -61,10 +77,7 @@ def triangle_edges(triangles: IntArray) -> IntArray:
 def open_edges(triangles: IntArray) -> IntArray:
     """Return the directed edges (k, 2) that no second triangle of the set shares."""
     edges = triangle_edges(triangles)
-    _, inverse, counts = np.unique(
-        np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    return np.asarray(edges[counts[inverse] == 1])
+    return np.asarray(edges[occurrences(np.sort(edges, axis=1)) == 1])
 
 
 def edge_neighbours(triangles: IntArray, labels: IntArray | None = None) -> IntArray:
@@ -72,10 +85,11 @@ def edge_neighbours(triangles: IntArray, labels: IntArray | None = None) -> IntA
     edges = np.sort(triangle_edges(triangles), axis=1)
     owner = np.tile(np.arange(len(triangles)), 3)
     marks = np.zeros(len(triangles), dtype=np.int64) if labels is None else labels
-    keys = np.column_stack((edges, np.tile(marks, 3)))
-    order = np.lexsort(keys.T)
-    same = (keys[order][1:] == keys[order][:-1]).all(axis=1)
-    return np.column_stack((owner[order][:-1][same], owner[order][1:][same]))
+    numbers = row_numbers(np.column_stack((edges, np.tile(marks, 3))))
+    order = np.argsort(numbers, kind="stable")
+    same = np.diff(numbers[order]) == 0
+    sorted_owner = owner[order]
+    return np.column_stack((sorted_owner[:-1][same], sorted_owner[1:][same]))
 
 
 def components(pairs: IntArray, size: int) -> IntArray:
