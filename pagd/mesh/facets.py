@@ -140,7 +140,7 @@ def _flood(
 def _group_normals(complex_: Complex, groups: IntArray) -> FloatArray:
     sums = np.zeros((int(groups.max()) + 1, 3))
     np.add.at(sums, groups, _vector_areas(complex_))
-    return sums / np.linalg.norm(sums, axis=1, keepdims=True)
+    return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
 
 
 def _graph(pairs: IntArray, size: int) -> coo_array:

@@ -160,7 +160,7 @@ def _vertices_on_edge(
     along = offset @ direction / length
     away = np.linalg.norm(offset - np.outer(along, direction / length), axis=1)
     inside = (along > tolerance) & (along < length - tolerance) & (away <= tolerance)
-    return vertices[inside]
+    return np.asarray(vertices[inside])
 
 
 def _fan(triangle: IntArray, edge: set[int], inside: IntArray, points: FloatArray) -> IntArray:

@@ -81,7 +81,8 @@ def _load(path: Path) -> _RawMesh:
         sorted_tags = tags[order]
 
         def numbers(nodes: Any, width: int) -> IntArray:
-            return np.asarray(np.searchsorted(sorted_tags, nodes), dtype=np.int64).reshape(-1, width)
+            found = np.searchsorted(sorted_tags, nodes)
+            return np.asarray(found, dtype=np.int64).reshape(-1, width)
 
         nodes = gmsh.model.mesh.getElementsByType(tet_type)[1]
         face_type = _TRI3 if tet_type == _TET4 else _TRI6

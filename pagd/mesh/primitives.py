@@ -1,0 +1,183 @@
+"""Structured meshes of simple bodies, on which results are known in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import permutations
+
+import numpy as np
+
+from pagd.mesh.quadratic import quadratic_mesh
+from pagd.mesh.tagging import name_surfaces
+from pagd.mesh.topology import BoolArray, boundary_faces, interface_faces
+from pagd.mesh.types import FloatArray, IntArray, Mesh
+
+__all__ = ["box", "cylinder_quarter", "hollow_block", "sphere_octant"]
+
+Range = tuple[int, int]
+
+
+def box(size: Sequence[float], cells: tuple[int, int, int], paper_layer: int | None = None) -> Mesh:
+    """Mesh the box [0, size] with six tetrahedra per cell.
+
+    Parameters
+    ----------
+    size
+        Edge lengths (3) in mm.
+    cells
+        Number of cells along x, y, z.
+    paper_layer
+        If given, the plane above that many layers of cells becomes the surface ``paper``.
+
+    Returns
+    -------
+    Mesh
+        With the sides ``x0``, ``x1``, ``y0``, … ``z1`` as surfaces.
+    """
+    points, tets = _grid(size, np.ones(cells, dtype=np.bool_))
+    faces = boundary_faces(tets)
+    surfaces = {
+        f"{name}{end}": faces[_all_at(points[:, axis], faces, end * size[axis])]
+        for axis, name in enumerate("xyz")
+        for end in (0, 1)
+    }
+    if paper_layer is not None:
+        height = size[2] * paper_layer / cells[2]
+        surfaces["paper"] = interface_faces(tets, points[tets].mean(axis=1)[:, 2] > height)
+    return quadratic_mesh(points, tets, surfaces)
+
+
+def hollow_block(
+    size: Sequence[float],
+    cells: tuple[int, int, int],
+    void: tuple[Range, Range, Range],
+    paper_layer: int,
+    half: bool = False,
+) -> Mesh:
+    """Mesh a block with a closed void: the smallest thing that has all surfaces of an actuator.
+
+    Parameters
+    ----------
+    size, cells
+        As for :func:`box`.
+    void
+        Ranges (first, behind last) of the cells along x, y, z that are left out.
+    paper_layer
+        Number of layers of cells below the paper.
+    half
+        The block is the half y >= 0 of a symmetric one; the void may then start at y = 0.
+    """
+    solid = np.ones(cells, dtype=np.bool_)
+    solid[tuple(slice(*bounds) for bounds in void)] = False
+    points, tets = _grid(size, solid)
+    height = size[2] * paper_layer / cells[2]
+    tolerance = 1e-9 * max(size)
+    return quadratic_mesh(points, tets, name_surfaces(points, tets, height, half, tolerance))
+
+
+def cylinder_quarter(
+    inner: float, outer: float, height: float, cells: tuple[int, int, int]
+) -> Mesh:
+    """Mesh a quarter of a thick cylinder around z with curved elements.
+
+    Parameters
+    ----------
+    inner, outer, height
+        Radii and length in mm.
+    cells
+        Number of cells along radius, angle and z.
+
+    Returns
+    -------
+    Mesh
+        With ``cavity`` (inner radius), ``outer``, and the planes ``x0``, ``y0``, ``z0``, ``z1``.
+    """
+    flat = box((outer - inner, np.pi / 2.0, height), cells)
+
+    def bend(points: FloatArray) -> FloatArray:
+        radius, angle, z = points.T + np.array([[inner], [0.0], [0.0]])
+        return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), z))
+
+    names = {"x0": "cavity", "x1": "outer", "y0": "y0", "y1": "x0", "z0": "z0", "z1": "z1"}
+    return _mapped(flat, bend, names)
+
+
+def sphere_octant(inner: float, outer: float, cells: tuple[int, int]) -> Mesh:
+    """Mesh an octant (x, y, z >= 0) of a thick sphere with curved elements.
+
+    Parameters
+    ----------
+    inner, outer
+        Radii in mm.
+    cells
+        Number of cells along the radius and along each side of the spherical triangle.
+
+    Returns
+    -------
+    Mesh
+        With ``cavity`` (inner radius), ``outer``, and the planes ``x0``, ``y0``, ``z0``.
+    """
+    flat = _prism(inner, outer, cells)
+
+    def inflate(points: FloatArray) -> FloatArray:
+        u, v, radius = points.T
+        directions = np.column_stack((1.0 - u - v, u, v))
+        return np.asarray(
+            directions * (radius / np.linalg.norm(directions, axis=1))[:, None], dtype=np.float64
+        )
+
+    return _mapped(flat, inflate, {name: name for name in flat.surfaces})
+
+
+def _mapped(
+    mesh: Mesh, function: Callable[[FloatArray], FloatArray], names: dict[str, str]
+) -> Mesh:
+    """Move all nodes, edge nodes too, by ``function`` and rename the surfaces."""
+    surfaces = {new: mesh.surfaces[old] for old, new in names.items()}
+    return Mesh(points=function(mesh.points), tets=mesh.tets, surfaces=surfaces)
+
+
+def _all_at(coordinates: FloatArray, faces: IntArray, value: float) -> BoolArray:
+    return np.asarray(np.isclose(coordinates[faces], value, rtol=1e-9, atol=1e-12).all(axis=1))
+
+
+def _grid(size: Sequence[float], solid: BoolArray) -> tuple[FloatArray, IntArray]:
+    """Points and tetrahedra of the cells of a regular grid that are ``solid``."""
+    axes = [np.linspace(0.0, size[i], n + 1) for i, n in enumerate(solid.shape)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = np.arange(len(points)).reshape([len(axis) for axis in axes])
+    corner = np.argwhere(solid)
+    return points, np.vstack([_kuhn(corner, numbers, order) for order in permutations(range(3))])
+
+
+def _kuhn(corner: IntArray, numbers: IntArray, order: tuple[int, ...]) -> IntArray:
+    """Return the tetrahedra along the edge path that walks each cell's axes in ``order``.
+
+    The six paths from one end of a cell's diagonal to the other divide it (Kuhn 1960), and
+    neighbouring cells agree on the diagonals of their common faces.
+    """
+    steps = np.vstack((np.zeros(3), np.cumsum(np.eye(3)[list(order)], axis=0))).astype(np.int64)
+    nodes = corner[:, None, :] + steps
+    tets = numbers[nodes[..., 0], nodes[..., 1], nodes[..., 2]]
+    is_odd = np.linalg.det(np.eye(3)[list(order)]) < 0.0
+    return np.asarray(tets[:, [0, 2, 1, 3]] if is_odd else tets)
+
+
+def _prism(inner: float, outer: float, cells: tuple[int, int]) -> Mesh:
+    """Mesh the prism u, v >= 0, u + v <= 1, inner <= r <= outer, named as its image."""
+    layers, n = cells
+    points, tets = _grid((1.0, 1.0, outer - inner), np.ones((n, n, layers), dtype=np.bool_))
+    # The diagonals of the cells run along x = y: keep one side of it, then mirror it.
+    x, y, _ = points[tets].mean(axis=1).T
+    tets = tets[y < x][:, [0, 2, 1, 3]]
+    points = points * np.array([-1.0, 1.0, 1.0]) + np.array([1.0, 0.0, inner])
+    faces = boundary_faces(tets)
+    u, v, radius = points.T
+    surfaces = {
+        "cavity": faces[_all_at(radius, faces, inner)],
+        "outer": faces[_all_at(radius, faces, outer)],
+        "x0": faces[_all_at(u + v, faces, 1.0)],
+        "y0": faces[_all_at(u, faces, 0.0)],
+        "z0": faces[_all_at(v, faces, 0.0)],
+    }
+    return quadratic_mesh(points, tets, surfaces)
