@@ -1,0 +1,52 @@
+# Every target first prepares what it needs. The sentence after ## is what `make help` says of it.
+
+SHELL := bash
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+# Overridable: make CORES=8, make PYTHON=/path/to/python3
+CORES ?= $(shell nproc)
+export PYTHON
+
+# Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+
+.PHONY: help run test lint clean distclean system-packages
+
+help: ## List the targets (the default).
+	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+run: .venv/pagd-installed ## Take the designs of the configuration from parameters to trajectories, into results/.
+	snakemake --profile profiles/default --cores $(CORES)
+
+# One solver thread a test process: the processes already fill the cores.
+test: lint ## Check the style, then run all tests.
+	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --numprocesses $(CORES) --dist loadscope
+
+lint: .venv/pagd-installed ## Check style, types and workflow.
+	ruff check .
+	ruff format --check .
+	mypy
+	snakefmt --check Snakefile workflow
+	snakemake --lint
+
+clean: ## Remove results and caches; the environment stays.
+	find results -mindepth 1 ! -name README.md -delete
+	rm -rf .snakemake .pytest_cache .mypy_cache .ruff_cache .hypothesis build
+	find . -path ./.venv -prune -o -name __pycache__ -exec rm -rf {} +
+
+distclean: clean ## Remove the environment too.
+	rm -rf .venv *.egg-info
+
+# Looked at every time (some 50 ms), since packages come and go without the repository knowing.
+system-packages:
+	@setup/system.sh
+
+# The two stamps lie inside the environment, so that they vanish with it.
+.venv/packages-installed: requirements.lock setup/python.sh | system-packages
+	@setup/python.sh
+	@touch $@
+
+.venv/pagd-installed: pyproject.toml .venv/packages-installed
+	@pip --disable-pip-version-check -qq install --no-deps --no-build-isolation --editable .
+	@touch $@
