@@ -1,0 +1,181 @@
+"""Geometry of a design: the OpenSCAD model, and its parts as triangulated surfaces.
+
+The surfaces are binary STL files. OpenSCAD's text formats (STL, OFF, AMF) keep six significant
+digits, which moves a vertex near the tip by up to 0.5 um and a volume by some 1e-5; binary STL
+keeps 24 bits, 4 nm there. Equal coordinates of two parts stay equal, so that body and base
+share the corners of the paper plane to the last bit.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+from importlib import resources
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.design import Design, GeometryRules, check
+from pagd.errors import InputError, StageFailure, Status
+from pagd.files import replaced_file, write_text
+
+__all__ = ["Part", "openscad_version", "render", "write_design_scad"]
+
+Part = Literal["body", "base", "cavity"]
+
+_SETTING = re.compile(r"^(?P<name>\w+) = (?P<value>[^;]+);(?: // \[(?P<range>[^\]:]+:[^\]]+)\])?$")
+_CANNOT_RUN = (126, 127)
+
+
+def write_design_scad(design: Design, rules: GeometryRules, path: Path) -> None:
+    """Write the OpenSCAD model with the values of one design, ready to be opened.
+
+    The file needs no other: it holds the parameters, with their sliders, and the modules.
+    Where gaps or base thicknesses differ along the row, they are written chamber by chamber.
+    """
+    settings = {symbol: repr(value) for symbol, value in design.as_dict().items()}
+    settings |= {
+        "channel_width": repr(rules.channel.width),
+        "channel_height": repr(rules.channel.height),
+        "channel_roof": repr(rules.channel.roof),
+        "t_n_each": _vector_unless_constant(design.gaps()),
+        "t_b_each": _vector_unless_constant(design.base_thicknesses()),
+    }
+    model = resources.files("pagd").joinpath("scad", "pneunet.scad").read_text(encoding="utf-8")
+    lines = [_with_setting(line, settings) for line in model.splitlines()]
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def render(
+    design: Design,
+    rules: GeometryRules,
+    part: Part,
+    path: Path,
+    half: bool = False,
+    time_limit: float = 120.0,
+) -> None:
+    """Write one part of a design as a binary STL file (mm).
+
+    Parameters
+    ----------
+    design, rules
+        What to make; checked before anything is run.
+    part
+        "body" (above the paper plane, hollow), "base" (below it) or "cavity" (the air).
+    path
+        The STL file; it appears only when it is complete.
+    half
+        Only y > 0, cut open at the plane of symmetry; for straight designs.
+    time_limit
+        Seconds after which OpenSCAD is ended.
+
+    Raises
+    ------
+    InputError
+        If OpenSCAD is not installed or does not start, or half of a slanted design is asked for.
+    StageFailure
+        ``invalid_geometry`` if the design breaks a rule, or OpenSCAD fails or takes too long.
+    """
+    check(design, rules)
+    if half and not design.is_straight:
+        raise InputError(
+            f"theta = {design.theta:g}, alpha = {design.alpha:g}: a design with slanted chambers"
+            " is not symmetric, so it has no half model."
+        )
+    program = _openscad()
+    with tempfile.TemporaryDirectory(prefix="pagd-") as folder, replaced_file(path) as target:
+        model = Path(folder) / "design.scad"
+        write_design_scad(design, rules, model)
+        command = [program, "-q", "--export-format", "binstl", "-o", str(target)]
+        command += ["-D", f'part="{part}"', "-D", f"half={str(half).lower()}", str(model)]
+        _run(command, time_limit, f"the {part}")
+
+
+def openscad_version() -> str:
+    """Version of the openscad program, for records.
+
+    Raises
+    ------
+    InputError
+        If OpenSCAD is not installed.
+    """
+    answer = subprocess.run([_openscad(), "--version"], capture_output=True, text=True, check=False)
+    return (answer.stdout + answer.stderr).strip().removeprefix("OpenSCAD version ")
+
+
+def _openscad() -> str:
+    program = shutil.which("openscad")
+    if program is None:
+        raise InputError(
+            "The program openscad is not on the PATH; install OpenSCAD 2021.01 or later."
+        )
+    return program
+
+
+def _run(command: list[str], time_limit: float, what: str) -> None:
+    """Run OpenSCAD; its process group does not outlive this call, whatever happens."""
+    with subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    ) as process:
+        try:
+            _, messages = process.communicate(timeout=time_limit)
+        except subprocess.TimeoutExpired:
+            reason = f"OpenSCAD did not finish {what} within {time_limit:g} s."
+            raise StageFailure(Status.invalid_geometry, reason) from None
+        finally:
+            _end_group(process)
+    if process.returncode in _CANNOT_RUN:
+        raise InputError(f"The program openscad does not start: {_last_lines(messages)}.")
+    if process.returncode != 0:
+        reason = f"OpenSCAD could not make {what}: {_last_lines(messages)}."
+        raise StageFailure(Status.invalid_geometry, reason)
+
+
+def _end_group(process: subprocess.Popen[str]) -> None:
+    """Kill what is left of the process and its children (its group bears its number)."""
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+
+
+def _last_lines(messages: str, count: int = 3) -> str:
+    lines = [line.strip() for line in messages.splitlines() if line.strip()]
+    return " | ".join(lines[-count:]).rstrip(".") or "it gave no reason"
+
+
+def _with_setting(line: str, settings: dict[str, str]) -> str:
+    """The line of the model, with the value of ``settings`` where it sets one of them."""
+    match = _SETTING.match(line)
+    if match is None or match["name"] not in settings:
+        return line
+    value = settings[match["name"]]
+    slider = f" // [{_widened(match['range'], float(value))}]" if match["range"] else ""
+    return f"{match['name']} = {value};{slider}"
+
+
+def _widened(slider: str, value: float) -> str:
+    """Range "low:step:high" of a slider, made to hold the value: else it would be cut off."""
+    low, step, high = slider.split(":")
+    if value < float(low):
+        low = repr(value)
+    if value > float(high):
+        high = repr(value)
+    return f"{low}:{step}:{high}"
+
+
+def _vector_unless_constant(values: NDArray[np.float64]) -> str:
+    """The values as an OpenSCAD vector; empty where they are all the same."""
+    if values.size == 0 or np.all(values == values[0]):
+        return "[]"
+    return str(values.tolist())
