@@ -45,7 +45,11 @@ if ((EUID)); then
     as_root=(sudo)
 fi
 echo "Installing system packages: ${packages[*]}"
-"${as_root[@]}" apt-get -qq update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get -qq install --no-install-recommends "${packages[@]}" >/dev/null ||
-    refuse "Installing them failed, see above. Please try again by hand:"
+install() {
+    # First finish what an interrupted installation may have left; wait for others who install.
+    "${as_root[@]}" dpkg --configure -a
+    "${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 \
+        install --no-install-recommends "${packages[@]}" >/dev/null
+}
+install || refuse "Installing them failed, see above. Please try again by hand:"
