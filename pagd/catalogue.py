@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -75,23 +75,21 @@ def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str
     InputError
         Naming the file, the row and every fault of it.
     """
-    rows: dict[str, dict[str, Any]] = {}
-    for origin, path in tables.items():
-        rows |= _rows(Path(path), origin)
+    rows = [row for origin, path in tables.items() for row in _rows(Path(path), origin)]
     if checked:
         check_each(rows, "designs")
-    return _by_name({where: NamedDesign.from_row(row) for where, row in rows.items()})
+    return _by_name((where, NamedDesign.from_row(row)) for where, row in rows)
 
 
-def _rows(path: Path, origin: str) -> dict[str, dict[str, Any]]:
-    """Return the rows of a table by the place where they stand."""
+def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
+    """Return the rows of a table, each with the place where it stands."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file, restkey="(no heading)", strict=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"table of designs {path}: cannot be read ({error}).") from None
     # Row 1 of the file is the heading.
-    return {f"{path}, row {i}": _typed(row, origin) for i, row in enumerate(rows, start=2)}
+    return [(f"{path}, row {i}", _typed(row, origin)) for i, row in enumerate(rows, start=2)]
 
 
 def _typed(row: Mapping[str, Any], origin: str) -> dict[str, Any]:
@@ -106,9 +104,9 @@ def _number(text: str) -> float | str:
     return text if number is None else number
 
 
-def _by_name(designs: Mapping[str, NamedDesign]) -> dict[str, NamedDesign]:
+def _by_name(designs: Iterable[tuple[str, NamedDesign]]) -> dict[str, NamedDesign]:
     found: dict[str, NamedDesign] = {}
-    for where, named in designs.items():
+    for where, named in designs:
         if named.name in found:
             raise InputError(f"{where}: name = '{named.name}' must be unique, but is taken.")
         found[named.name] = named

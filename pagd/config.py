@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import copy
+import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from pagd.documents import read_document
+from pagd.materials import find_material
 from pagd.validation import check, defaults, schema
 
-__all__ = ["SECTIONS", "checked", "completed", "load", "part"]
+__all__ = ["SECTIONS", "checked", "completed", "load", "material_as_json", "part", "part_as_json"]
 
 #: The sections of the configuration that each stage depends on, and no others.
 SECTIONS = {
     "geometry": ("channel", "limits", "geometry"),
-    "repair": (),
-    "mesh": ("channel", "mesh"),
+    "repair": ("repair",),
+    "mesh": ("mesh",),
     "solve": ("solve",),
     "metrics": ("metrics",),
     "figures": ("figures",),
@@ -57,3 +60,23 @@ def completed(given: Mapping[str, Any]) -> Config:
 def part(config: Mapping[str, Any], stage: str) -> Config:
     """Return the sections of a configuration that ``stage`` depends on."""
     return {section: config[section] for section in SECTIONS[stage]}
+
+
+def part_as_json(config: Mapping[str, Any], stage: str) -> str:
+    """Return :func:`part` as one line of JSON, to be handed to a stage as it is."""
+    return json.dumps(part(config, stage), ensure_ascii=False)
+
+
+def material_as_json(file: str, name: str) -> str:
+    """Return an entry of the file of materials with its name, as one line of JSON.
+
+    What the entry says about its source is left out: a better citation changes no result.
+
+    Raises
+    ------
+    InputError
+        If there is no such entry.
+    """
+    entry = {"name": name, **find_material(Path(file), name)}
+    entry.pop("source", None)
+    return json.dumps(entry, ensure_ascii=False)

@@ -35,15 +35,11 @@ def read_document(source: str, what: str) -> tuple[dict[str, Any], str]:
         If it cannot be read, or is no such table.
     """
     if source.lstrip().startswith("{"):
-        return _table(_parsed_json(source, what), what), ""
-    try:
-        content = parse_yaml(Path(source).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{what} {source}: cannot be read ({error}).") from None
-    except yaml.YAMLError as error:
-        place = " ".join(str(error).split())
-        raise InputError(f"{what} {source}: is neither YAML nor JSON ({place}).") from None
-    return _table(content, f"{what} {source}"), source
+        return _parsed_json(source, what), ""
+    what = f"{what} {source}"
+    text = _text_of(source, what)
+    parse = _parsed_json if source.endswith(".json") else _parsed_yaml
+    return parse(text, what), source
 
 
 def parse_yaml(text: str) -> Any:
@@ -51,11 +47,25 @@ def parse_yaml(text: str) -> Any:
     return yaml.load(text, Loader=_Loader)
 
 
-def _parsed_json(text: str, what: str) -> Any:
+def _text_of(file: str, what: str) -> str:
     try:
-        return json.loads(text)
+        return Path(file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{what}: cannot be read ({error}).") from None
+
+
+def _parsed_json(text: str, what: str) -> dict[str, Any]:
+    try:
+        return _table(json.loads(text), what)
     except ValueError as error:
-        raise InputError(f"{what}: the text is not JSON ({error}).") from None
+        raise InputError(f"{what}: is not JSON ({error}).") from None
+
+
+def _parsed_yaml(text: str, what: str) -> dict[str, Any]:
+    try:
+        return _table(parse_yaml(text), what)
+    except yaml.YAMLError as error:
+        raise InputError(f"{what}: is not YAML ({' '.join(str(error).split())}).") from None
 
 
 def _table(content: Any, what: str) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from pagd.files import replaced_file
 
 __all__ = [
     "HISTORY",
+    "MEASURES",
     "PERFORMANCE",
     "STATES",
     "TRAJECTORY",
@@ -64,6 +65,28 @@ TRAJECTORY = (
     Column("z_mm", "double", "mm", "position of the section upwards"),
     Column("bending_deg", "double", "deg", "rotation of the section about the width axis"),
     Column("twist_deg", "double", "deg", "rotation of the section about the deformed axis"),
+)
+
+MEASURES = (
+    Column("pressure_kPa", "double", "kPa", "recorded pressure"),
+    Column("bending_deg", "double", "deg", "bending of the tip, summed over the joints"),
+    Column("twist_deg", "double", "deg", "twist of the tip, summed over the joints"),
+    Column("sideways_deg", "double", "deg", "bending within the paper, summed over the joints"),
+    Column("swing_deg", "double", "deg", "angle between the tip and the undeformed axis"),
+    Column("swing_twist_deg", "double", "deg", "twist part of the tip's whole rotation"),
+    Column("chord_deg", "double", "deg", "angle of the line from the fixed end to the tip"),
+    Column("out_of_plane_mm", "double", "mm", "deflection of the tip across"),
+    Column("tip_x_mm", "double", "mm", "position of the tip along the undeformed actuator"),
+    Column("tip_y_mm", "double", "mm", "position of the tip across"),
+    Column("tip_z_mm", "double", "mm", "position of the tip upwards"),
+    Column("measured_mode", "string", "", "mode measured from bending and twist of the joints"),
+    Column("cavity_volume_mm3", "double", "mm³", "volume of the whole cavity"),
+    Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
+    Column("stored_energy_mJ", "double", "mJ", "elastic energy of elastomer and paper"),
+    Column("energy_balance", "double", "1", "|∫p dV − U| / U with the stored energy U"),
+    Column("work_density_kJ_m3", "double", "kJ/m³", "work of the pressure by elastomer volume"),
+    Column("strain_max", "double", "1", "largest principal logarithmic strain"),
+    Column("strain_p99", "double", "1", "99th percentile of the largest principal log strain"),
 )
 
 PERFORMANCE = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib.resources
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeAlias
 
 from pagd.documents import parse_yaml
@@ -37,10 +37,10 @@ def check(document: Any, name: str, where: str) -> None:
         raise InputError(f"{where}: {'; '.join(found)}.")
 
 
-def check_each(documents: Mapping[str, Any], name: str) -> None:
-    """Check many documents, by the place that each stands in, against one schema."""
+def check_each(documents: Iterable[tuple[str, Any]], name: str) -> None:
+    """Check many documents, each with the place where it stands, against one schema."""
     validator = _validator(name)
-    for where, document in documents.items():
+    for where, document in documents:
         # Most are sound: the slow search for the words only for those that are not.
         if not validator.is_valid(document):
             check(document, name, where)
@@ -131,6 +131,7 @@ _WORDS: dict[str, Callable[[str, Any], str]] = {
     "additionalProperties": _unknown,
     "required": _missing,
     "pattern": _pattern,
+    "minProperties": lambda key, error: f"{key} must not be empty",
 }
 
 

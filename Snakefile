@@ -1,0 +1,40 @@
+# The method on one screen: designs → geometry → repair → mesh → solve → metrics → summary, pictures.
+#
+#   snakemake --profile profiles/default            everything
+#   snakemake --profile profiles/default summary    the tables only
+#   snakemake --profile profiles/default -n         what would be done, and why
+
+from snakemake.utils import min_version
+
+min_version("9.0")
+
+
+configfile: "config/config.yaml"
+
+
+report: "workflow/report/workflow.rst"
+
+
+wildcard_constraints:
+    design="[A-Za-z0-9_-]+",
+
+
+localrules:
+    all,
+    summary_tables,
+    report_page,
+
+
+include: "workflow/rules/common.smk"  # configuration and designs, checked; input functions
+include: "workflow/rules/design.smk"  # one design: geometry, repair, mesh, solve, metrics
+include: "workflow/rules/summary.smk"  # all designs: tables of performance and trajectories
+include: "workflow/rules/publish.smk"  # pictures and the page
+
+
+rule all:
+    default_target: True
+    input:
+        rules.summary.input,
+        #rules.publish.input,
+    message:
+        "Tables, pictures and page are complete: open results/report/index.html."

@@ -1,0 +1,7 @@
+"""``python -m pagd`` is ``pagd``."""
+
+import sys
+
+from pagd.cli import main
+
+sys.exit(main())

@@ -1,0 +1,162 @@
+"""What each subcommand does: read the options, call the stage, tell how it went.
+
+Stages are imported where they are used: each needs libraries that the others do not.
+"""
+
+from __future__ import annotations
+
+import os
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from pagd import config as configuration
+from pagd.catalogue import design_from
+from pagd.cli.output import print_design, print_result, verdict
+from pagd.errors import InputError
+
+__all__ = [
+    "check_design",
+    "figures",
+    "geometry",
+    "mesh",
+    "metrics",
+    "repair",
+    "run_all",
+    "show_design",
+    "solve",
+]
+
+
+def check_design(options: Namespace) -> int:
+    """Tell every rule that a design breaks; 1 if it breaks any."""
+    from pagd.design import violations
+    from pagd.stages.geometry import rules_of
+
+    named = design_from(options.design)
+    broken = violations(named.design, rules_of(_config(options)))
+    for violation in broken:
+        print(violation)
+    print(f"{named.name}: {'cannot be built' if broken else 'can be built'}")
+    return 1 if broken else 0
+
+
+def show_design(options: Namespace) -> int:
+    """Print a design's parameters and what follows from them."""
+    from pagd.stages.geometry import rules_of
+
+    print_design(design_from(options.design), rules_of(_config(options)))
+    return 0
+
+
+def geometry(options: Namespace) -> int:
+    """Run the stage geometry."""
+    from pagd.stages import geometry as stage
+
+    record = stage.run(design_from(options.design), options.out, _config(options))
+    return verdict(record, options.keep_going)
+
+
+def repair(options: Namespace) -> int:
+    """Run the stage repair."""
+    from pagd.stages import repair as stage
+
+    record = stage.run(options.geometry, options.out, _config(options))
+    return verdict(record, options.keep_going)
+
+
+def mesh(options: Namespace) -> int:
+    """Run the stage mesh, on a design's surfaces or on the user's own."""
+    from pagd.stages import mesh as stage
+
+    config = _config(options)
+    if options.body or options.base:
+        own = stage.OwnSurfaces(name=options.name, half=options.half, **_both(options))
+        record = stage.run_own(own, options.out, config)
+    elif options.geometry and options.repair:
+        record = stage.run(options.geometry, options.repair, options.out, config)
+    else:
+        raise InputError("mesh needs either --geometry and --repair, or --body and --base.")
+    return verdict(record, options.keep_going)
+
+
+def solve(options: Namespace) -> int:
+    """Run the stage solve, on a mesh of ours or on the user's own."""
+    set_threads(options.threads)
+    from pagd.stages import solve as stage
+
+    config = _config(options)
+    record = stage.run(
+        options.mesh,
+        options.out,
+        config,
+        stage.materials_of(config, options.material, options.paper),
+        name=options.name,
+        vtu=options.vtu,
+    )
+    return verdict(record, options.keep_going)
+
+
+def metrics(options: Namespace) -> int:
+    """Run the stage metrics."""
+    from pagd.stages import metrics as stage
+
+    folders = stage.Folders(
+        mesh=options.mesh, solve=options.solve, geometry=options.geometry, repair=options.repair
+    )
+    record = stage.run(folders, options.out, _config(options), options.sections)
+    print_result(record)
+    return verdict(record, options.keep_going)
+
+
+def figures(options: Namespace) -> int:
+    """Run the stage figures."""
+    from pagd.stages import figures as stage
+
+    record = stage.run(options.design_folder, options.out, _config(options))
+    return verdict(record, options.keep_going)
+
+
+def run_all(options: Namespace) -> int:
+    """Run all stages of one design, each in a folder of its own under ``--out``."""
+    set_threads(options.threads)
+    from pagd.stages import chain
+    from pagd.stages.solve import materials_of
+
+    config = _config(options)
+    record = chain.run(
+        design_from(options.design),
+        options.out,
+        config,
+        materials_of(config, options.material, options.paper),
+        vtu=options.vtu,
+    )
+    print_result(record)
+    return verdict(record, options.keep_going)
+
+
+def set_threads(count: int) -> None:
+    """Limit the threads of every library that counts them; before they are imported."""
+    if count < 1:
+        raise InputError(f"--threads = {count} must be at least 1.")
+    for library in ("MKL", "OMP", "OPENBLAS", "NUMBA"):
+        os.environ[f"{library}_NUM_THREADS"] = str(count)
+
+
+def _config(options: Namespace) -> dict[str, Any]:
+    """Return the configuration, with the options that stand for single keys put in."""
+    config = configuration.load(options.config)
+    given = {name: value for name, value in vars(options).items() if value is not None}
+    for name, value in given.items():
+        section, _, key = name.rpartition(".")
+        if section:
+            config[section][key] = value
+    if given.get("material_file"):
+        config["material_file"] = given["material_file"]
+    return configuration.checked(config, "command line")
+
+
+def _both(options: Namespace) -> dict[str, Path]:
+    if not (options.body and options.base):
+        raise InputError("--body and --base must be given together.")
+    return {"body": options.body, "base": options.base}

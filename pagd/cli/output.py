@@ -1,0 +1,76 @@
+"""What the command line says while it works and when it is done."""
+
+from __future__ import annotations
+
+import logging
+import sys
+
+from pagd.catalogue import NamedDesign
+from pagd.design import (
+    PARAMETERS,
+    GeometryRules,
+    base_volume,
+    body_volume,
+    cavity_volume,
+    violations,
+)
+from pagd.errors import Status
+from pagd.record import Record
+
+__all__ = ["print_design", "print_result", "start_log", "verdict"]
+
+
+def start_log(verbose: bool) -> None:
+    """Send the log to stderr: plain lines for a person, dated ones for a file."""
+    people = sys.stderr.isatty()
+    logging.basicConfig(
+        stream=sys.stderr,
+        format="%(message)s" if people else "%(asctime)s %(levelname)s %(message)s",
+        force=True,
+    )
+    logging.getLogger("pagd").setLevel(logging.DEBUG if verbose else logging.INFO)
+
+
+def verdict(record: Record, keep_going: bool) -> int:
+    """Return the exit code for how a design stands, and say on stderr why it is not ok."""
+    if record.status is Status.ok:
+        return 0
+    print(f"pagd: {record.design_id}: {record.status}: {record.reason}", file=sys.stderr)
+    return 0 if keep_going else 1
+
+
+def print_design(named: NamedDesign, rules: GeometryRules) -> None:
+    """Print the parameters of a design and, if it can be built, what follows from them."""
+    design = named.design
+    print(f"{named.name} ({named.origin})")
+    for symbol, value in design.as_dict().items():
+        parameter = PARAMETERS[symbol]
+        _print_row(symbol, value, parameter.unit, parameter.description)
+    broken = violations(design, rules)
+    if broken:
+        print("cannot be built:", *broken, sep="\n  ")
+        return
+    _print_row("L_T", design.L_T, "mm", "total length")
+    _print_row("N1, N2", f"{design.N1}, {design.N2}", "1", "helical and straight chambers")
+    _print_row("mode", design.mode, "", "deformation it is drawn for")
+    solid = body_volume(design, rules) + base_volume(design)
+    _print_row("solid", solid, "mm³", "volume of the elastomer")
+    _print_row("cavity", cavity_volume(design, rules), "mm³", "volume of the air")
+
+
+def print_result(record: Record) -> None:
+    """Print bending and twist at the last pressure; nothing where there is none."""
+    figures = record.figures
+    if "bending_deg" not in figures:
+        return
+    print(
+        f"{record.design_id}: bends by {figures['bending_deg']:.1f}° and twists by "
+        f"{figures['twist_deg']:.1f}° at {figures['pressure_kPa']:g} kPa "
+        f"({figures['material']}, {figures['tets']} tetrahedra, "
+        f"energy balance {100 * figures['energy_balance']:.2f} %)"
+    )
+
+
+def _print_row(name: str, value: object, unit: str, text: str) -> None:
+    shown = f"{value:g}" if isinstance(value, float) else str(value)
+    print(f"  {name:<8}{shown:>12} {unit.replace('1', ''):<8} {text}")

@@ -1,0 +1,217 @@
+"""The arguments of every subcommand. Light on purpose: ``pagd --help`` imports nothing heavy."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pagd import __version__
+
+__all__ = ["make_parser"]
+
+_EPILOG = """\
+examples:
+  pagd run my_design.yaml --out my_design          all stages for a design of your own
+  pagd design check my_design.yaml                 is it buildable?
+  pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
+  pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
+
+exit codes: 0 done, 1 the design failed (its record says why), 2 bad input
+"""
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser; each subcommand carries its ``handler(options) -> exit code``."""
+    parser = argparse.ArgumentParser(
+        prog="pagd",
+        description="Design and simulate soft pneumatic actuators, from parameters to "
+        "trajectories. Units are mm, N, MPa; kPa and degrees where the name says so.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"pagd {__version__}")
+    commands = parser.add_subparsers(metavar="command", required=True)
+    _add_run(commands)
+    _add_design(commands)
+    _add_geometry(commands)
+    _add_repair(commands)
+    _add_mesh(commands)
+    _add_solve(commands)
+    _add_metrics(commands)
+    _add_figures(commands)
+    return parser
+
+
+def _add_run(commands: Any) -> None:
+    run = _command(commands, "run", "run_all", "all stages for one design, in one folder")
+    run.add_argument("design", help="design: a YAML or JSON file, or JSON text")
+    _add_stage_options(run)
+    _add_mesh_options(run)
+    _add_solve_options(run)
+
+
+def _add_design(commands: Any) -> None:
+    design = commands.add_parser("design", help="look at a design before anything is run")
+    actions = design.add_subparsers(metavar="action", required=True)
+    for action, handler, text in (
+        ("check", "check_design", "tell every rule that the design breaks"),
+        ("show", "show_design", "print the parameters and what follows from them"),
+    ):
+        sub = _command(actions, action, handler, text)
+        sub.add_argument("design", help="design: a YAML or JSON file, or JSON text")
+        _add_config(sub)
+        _add_verbose(sub)
+
+
+def _add_geometry(commands: Any) -> None:
+    geometry = _command(commands, "geometry", "geometry", "parameters → surfaces, by OpenSCAD")
+    geometry.add_argument(
+        "--design", required=True, help="design: a YAML or JSON file, or JSON text"
+    )
+    _add_stage_options(geometry)
+
+
+def _add_repair(commands: Any) -> None:
+    repair = _command(commands, "repair", "repair", "surfaces → sound surfaces, by pymeshlab")
+    _add_folder(repair, "geometry", required=True)
+    _add_stage_options(repair)
+
+
+def _add_mesh(commands: Any) -> None:
+    mesh = _command(commands, "mesh", "mesh", "surfaces → quadratic tetrahedra with named surfaces")
+    _add_folder(mesh, "geometry", required=False)
+    _add_folder(mesh, "repair", required=False)
+    own = mesh.add_argument_group("surfaces of your own, instead of a design")
+    own.add_argument("--body", type=Path, metavar="STL", help="solid above the paper, hollow")
+    own.add_argument("--base", type=Path, metavar="STL", help="solid below the paper")
+    own.add_argument(
+        "--half", action="store_true", help="they are the half y ≥ 0 of a symmetric actuator"
+    )
+    own.add_argument("--name", default="own", help="name in the record (default: %(default)s)")
+    _add_mesh_options(mesh)
+    _add_stage_options(mesh)
+
+
+def _add_mesh_options(command: argparse.ArgumentParser) -> None:
+    group = command.add_argument_group("mesh (instead of the configuration's values)")
+    _override(group, "mesh", "size_mm", float, "edge length of the tetrahedra")
+    _override(group, "mesh", "mesher", str, "gmsh or ftetwild, tried first")
+    _override(group, "mesh", "time_limit_s", float, "a mesher is ended after this time")
+
+
+def _add_solve(commands: Any) -> None:
+    solve = _command(commands, "solve", "solve", "free actuation: pressure from 0 to the maximum")
+    solve.add_argument(
+        "--mesh",
+        type=Path,
+        required=True,
+        help="folder of the stage mesh, or a .msh file with surfaces fixed, cavity, paper, …",
+    )
+    solve.add_argument("--name", help="name in the record (default: that of the mesh)")
+    _add_solve_options(solve)
+    _add_stage_options(solve)
+
+
+def _add_solve_options(command: argparse.ArgumentParser) -> None:
+    group = command.add_argument_group("analysis (instead of the configuration's values)")
+    for use, what in (("material", "elastomer"), ("paper", "sheet in the base")):
+        group.add_argument(
+            f"--{use}",
+            metavar="NAME",
+            help=f"{what}: a name in the file of materials, or a JSON entry with a name",
+        )
+    group.add_argument(
+        "--material-file", metavar="FILE", help="file of materials (default: pagd's own)"
+    )
+    group.add_argument(
+        "--pressure-kPa",
+        dest="solve.maximum_pressure_kPa",
+        type=float,
+        metavar="P",
+        help="pressure at the end",
+    )
+    _override(group, "solve", "element", str, "taylor_hood or element_pressure")
+    group.add_argument(
+        "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
+    )
+    group.add_argument("--vtu", action="store_true", help="also write the states for ParaView")
+
+
+def _add_metrics(commands: Any) -> None:
+    metrics = _command(commands, "metrics", "metrics", "states → trajectory, bending, twist, work")
+    for stage in ("geometry", "repair"):
+        _add_folder(metrics, stage, required=False)
+    for stage in ("mesh", "solve"):
+        _add_folder(metrics, stage, required=True)
+    metrics.add_argument(
+        "--sections",
+        type=int,
+        default=11,
+        metavar="N",
+        help="evenly spaced sections to follow where there is no design (default: %(default)s)",
+    )
+    _add_stage_options(metrics)
+
+
+def _add_figures(commands: Any) -> None:
+    figures = _command(commands, "figures", "figures", "pictures of geometry, mesh and shapes")
+    figures.add_argument(
+        "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
+    )
+    _add_stage_options(figures)
+
+
+def _command(commands: Any, name: str, handler: str, text: str) -> argparse.ArgumentParser:
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=text, description=text[0].upper() + text[1:] + "."
+    )
+    command.set_defaults(handler=_lazy(handler))
+    return command
+
+
+def _lazy(handler: str) -> Callable[[argparse.Namespace], int]:
+    def call(options: argparse.Namespace) -> int:
+        module = importlib.import_module("pagd.cli.commands")
+        code: int = getattr(module, handler)(options)
+        return code
+
+    return call
+
+
+def _add_folder(command: argparse.ArgumentParser, stage: str, *, required: bool) -> None:
+    command.add_argument(
+        f"--{stage}", type=Path, required=required, metavar="DIR", help=f"folder of stage {stage}"
+    )
+
+
+def _override(group: Any, section: str, key: str, kind: type, text: str) -> None:
+    option = f"--{key.replace('_', '-')}"
+    group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar="VALUE", help=text)
+
+
+def _add_stage_options(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder to make or replace"
+    )
+    command.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="exit with 0 also when the design fails as designs may: its record tells",
+    )
+    _add_config(command)
+    _add_verbose(command)
+
+
+def _add_config(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--config",
+        metavar="FILE",
+        help="configuration: a YAML file or JSON text; what it lacks keeps its default",
+    )
+
+
+def _add_verbose(command: argparse.ArgumentParser) -> None:
+    command.add_argument("-v", "--verbose", action="store_true", help="say more")

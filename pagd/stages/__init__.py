@@ -1,0 +1,18 @@
+"""The stages of the chain: each reads folders, calls the library and leaves a folder.
+
+A stage's folder holds its files and ``record.json``. A design that fails in an expected way
+leaves a folder too, with the reason in the record; the stages after it pass that on.
+"""
+
+#: Version of each stage's meaning. Raise it when a change of the library changes what the stage
+#: makes of the same inputs: the workflow then runs it again, and what follows from it.
+STAGE_VERSIONS = {
+    "geometry": 1,
+    "repair": 1,
+    "mesh": 1,
+    "solve": 1,
+    "metrics": 1,
+    "figures": 1,
+    "summary": 1,
+    "report": 1,
+}

@@ -1,0 +1,101 @@
+"""What all stages have in common: the folder, the record, and failures that are passed on."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pagd.errors import StageFailure, Status
+from pagd.record import Meter, Record, stage_folder, versions, write_record
+from pagd.stages import STAGE_VERSIONS
+
+__all__ = ["Outcome", "Work", "run_stage"]
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What a stage found out; filled while it works, so that a failure keeps what came before."""
+
+    figures: dict[str, Any] = field(default_factory=dict)
+    status: Status = Status.ok
+    reason: str | None = None
+
+    def end(self, status: Status, reason: str | None) -> None:
+        """Set how the design stands."""
+        self.status, self.reason = status, reason
+
+
+#: A stage's own work: (folder to fill, outcome to fill, clock).
+Work = Callable[[Path, Outcome, Meter], None]
+
+
+def run_stage(
+    stage: str,
+    out: Path,
+    work: Work,
+    *,
+    design_id: str,
+    configuration: Mapping[str, Any],
+    upstream: Sequence[Record] = (),
+    goes_on: bool = False,
+    libraries: Mapping[str, str | None] | tuple[str, ...] = (),
+) -> Record:
+    """Run one stage of one design and leave its folder.
+
+    Parameters
+    ----------
+    stage
+        Name of the stage, one of ``STAGE_VERSIONS``.
+    out
+        Its folder; appears complete, with a record, or not at all.
+    work
+        Fills the folder; raises ``StageFailure`` where the design fails as designs may.
+    design_id
+        Name of the design.
+    configuration
+        What the record says the result was made of.
+    upstream
+        Records of the stages before, in order. A failed one is passed on without any work, …
+    goes_on
+        … unless what it left is enough for this stage.
+    libraries
+        Packages whose versions the record names.
+    """
+    meter, outcome = Meter(), Outcome()
+    failed = next((record for record in upstream if record.status is not Status.ok), None)
+    with stage_folder(out) as folder:
+        if failed is None or goes_on:
+            _attempt(work, folder, outcome, meter)
+        if failed is not None:
+            outcome.end(failed.status, failed.reason)
+        record = Record(
+            stage=stage,
+            design_id=design_id,
+            status=outcome.status,
+            reason=outcome.reason,
+            figures=outcome.figures,
+            configuration=dict(configuration),
+            versions=versions(STAGE_VERSIONS[stage], libraries),
+            timings_s=meter.timings_s(),
+            peak_memory_MB=meter.peak_memory_MB(),
+        )
+        write_record(record, folder)
+    _report(record)
+    return record
+
+
+def _attempt(work: Work, folder: Path, outcome: Outcome, meter: Meter) -> None:
+    try:
+        work(folder, outcome, meter)
+    except StageFailure as failure:
+        outcome.end(failure.status, failure.reason)
+
+
+def _report(record: Record) -> None:
+    seconds = record.timings_s["wall"]
+    log.info("%s of %s: %s (%.1f s)", record.stage, record.design_id, record.status, seconds)

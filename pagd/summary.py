@@ -1,0 +1,87 @@
+"""All designs together: one row a design, whatever became of it, and all trajectories."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pagd.files import write_text
+from pagd.record import Record, read_record
+from pagd.tables import PERFORMANCE, TRAJECTORY, concatenate, write_rows
+
+__all__ = ["performance_row", "write_summary", "write_trajectories"]
+
+#: Columns of the table for people: heading, key of the record's figures, format.
+_FOR_PEOPLE = (
+    ("mode drawn", "mode", ""),
+    ("mode measured", "measured_mode", ""),
+    ("material", "material", ""),
+    ("mesh size, mm", "size_mm", "g"),
+    ("tetrahedra", "tets", ""),
+    ("pressure, kPa", "pressure_kPa", "g"),
+    ("bending, °", "bending_deg", ".1f"),
+    ("twist, °", "twist_deg", ".1f"),
+    ("tip x, mm", "tip_x_mm", ".1f"),
+    ("tip y, mm", "tip_y_mm", ".1f"),
+    ("tip z, mm", "tip_z_mm", ".1f"),
+    ("energy balance", "energy_balance", ".4f"),
+    ("time, s", "wall_s", ".1f"),
+)
+
+
+def write_summary(metrics: Sequence[Path], performance: Path, table: Path) -> None:
+    """Gather the records of the stage metrics.
+
+    Parameters
+    ----------
+    metrics
+        Folders of the stage metrics, one a design, in the order of the rows.
+    performance
+        Parquet file to write, with the columns ``PERFORMANCE``.
+    table
+        CSV file to write, for people.
+    """
+    records = [read_record(folder) for folder in metrics]
+    write_rows(performance, PERFORMANCE, [performance_row(record) for record in records])
+    write_text(table, _for_people(records))
+
+
+def write_trajectories(metrics: Sequence[Path], trajectories: Path) -> None:
+    """Gather the trajectories of all designs that have one, with the columns ``TRAJECTORY``."""
+    parts = [folder / "trajectory.parquet" for folder in metrics]
+    concatenate(trajectories, [part for part in parts if part.is_file()], TRAJECTORY)
+
+
+def performance_row(record: Record) -> dict[str, Any]:
+    """Return a design's row of the table ``PERFORMANCE`` from its record of the stage metrics."""
+    figures = record.figures
+    row = {column.name: figures.get(column.name) for column in PERFORMANCE}
+    own = record.timings_s
+    return row | {
+        "design_id": record.design_id,
+        "name": figures.get("name", record.design_id),
+        "status": record.status.value,
+        "reason": record.reason,
+        "fidelity": "full",
+        # The record's figures were written before the stage itself had ended.
+        "cpu_s": figures["cpu_s"] + own["cpu"],
+        "wall_s": figures["wall_s"] + own["wall"],
+        "peak_memory_MB": max(figures["peak_memory_MB"], record.peak_memory_MB),
+    }
+
+
+def _for_people(records: Sequence[Record]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["design", *(heading for heading, _, _ in _FOR_PEOPLE), "status", "reason"])
+    for record in records:
+        cells = [_cell(record.figures.get(key), form) for _, key, form in _FOR_PEOPLE]
+        writer.writerow([record.design_id, *cells, record.status.value, record.reason or ""])
+    return text.getvalue()
+
+
+def _cell(value: Any, form: str) -> str:
+    return "" if value is None else format(value, form)

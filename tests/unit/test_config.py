@@ -1,0 +1,89 @@
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import pytest
+import yaml
+
+from pagd import config
+from pagd.design import GeometryRules
+from pagd.errors import InputError
+from pagd.metrics import Thresholds
+from pagd.stages import STAGE_VERSIONS
+from pagd.stages.geometry import rules_of
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_file_in_the_repository_holds_every_key_and_its_default() -> None:
+    given = yaml.safe_load((ROOT / "config" / "config.yaml").read_text())
+    assert given == config.load(None)
+
+
+def test_defaults_are_those_of_the_library() -> None:
+    defaults = config.load(None)
+    assert rules_of(defaults) == GeometryRules()
+    assert defaults["metrics"] == asdict(Thresholds())
+
+
+def test_what_is_lacking_takes_its_default(tmp_path: Path) -> None:
+    (tmp_path / "c.yaml").write_text("mesh: {size_mm: 5}\ndesigns: {own: mine.csv}\n")
+    found = config.load(str(tmp_path / "c.yaml"))
+    assert found["mesh"] == config.load(None)["mesh"] | {"size_mm": 5}
+    assert found["designs"] == {"own": "mine.csv"}
+    assert found["solve"] == config.load(None)["solve"]
+
+
+def test_defaults_cannot_be_spoilt() -> None:
+    config.load(None)["mesh"]["size_mm"] = 99
+    assert config.load(None)["mesh"]["size_mm"] != 99
+
+
+def test_numbers_may_be_written_as_powers(tmp_path: Path) -> None:
+    (tmp_path / "c.yaml").write_text("solve: {maximum_pressure_kPa: 5e1}\n")
+    assert config.load(str(tmp_path / "c.yaml"))["solve"]["maximum_pressure_kPa"] == 50.0
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("mesh: [1", "is not YAML"),
+        ("- 1", "must be a table of keys and values"),
+        ("mesh: {size_mm: -3}", "mesh.size_mm = -3 must be greater than 0"),
+    ],
+)
+def test_a_bad_file_is_told_in_one_sentence(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "c.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"^configuration .*c\.yaml: ") as caught:
+        config.load(str(path))
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_json_text_and_missing_files() -> None:
+    assert config.load('{"paper": "card"}')["paper"] == "card"
+    with pytest.raises(InputError, match=r"is not JSON"):
+        config.load('{"paper"')
+    with pytest.raises(InputError, match=r"absent\.yaml: cannot be read"):
+        config.load("absent.yaml")
+
+
+def test_every_stage_of_a_design_has_its_part_and_no_more() -> None:
+    whole = config.load(None)
+    assert set(config.SECTIONS) <= set(STAGE_VERSIONS)
+    for stage in config.SECTIONS:
+        text = config.part_as_json(whole, stage)
+        assert json.loads(text) == config.part(whole, stage)
+        # What a stage is handed must complete to the same configuration.
+        assert config.part(config.load(text), stage) == config.part(whole, stage)
+
+
+def test_a_material_has_its_name_and_no_citation() -> None:
+    file = str(ROOT / "config" / "materials.yaml")
+    entry = json.loads(config.material_as_json(file, "elastosil_m4601"))
+    assert entry["name"] == "elastosil_m4601"
+    assert entry["coefficients"] == {"C10": 0.11, "C20": 0.02}
+    assert "source" not in entry
+    with pytest.raises(InputError, match="must be one of"):
+        config.material_as_json(file, "unobtainium")

@@ -1,0 +1,52 @@
+import pytest
+
+from pagd.errors import InputError
+from pagd.validation import check, check_each, defaults, faults, schema
+
+
+@pytest.mark.parametrize(
+    ("document", "sentence"),
+    [
+        ({"mash": {}}, "mash is not a known key (did you mean mesh?)"),
+        ({"mesh": {"qqqqq": 1}}, "mesh.qqqqq is not a known key (known are mesher, size_mm"),
+        ({"mesh": 3}, "mesh = 3 must be a table of keys and values"),
+        ({"mesh": {"size_mm": "3"}}, "mesh.size_mm = '3' must be a number"),
+        ({"mesh": {"size_mm": True}}, "mesh.size_mm = True must be a number"),
+        ({"mesh": {"size_mm": 0}}, "mesh.size_mm = 0 must be greater than 0"),
+        ({"mesh": {"mesher": "netgen"}}, "mesh.mesher = 'netgen' must be one of gmsh, ftetwild"),
+        ({"limits": {"gap_mm": -1}}, "limits.gap_mm = -1 must be at least 0"),
+        ({"limits": {"theta_deg": 91}}, "limits.theta_deg = 91 must be at most 60"),
+        ({"designs": {}}, "designs must not be empty"),
+        ({"material": 7}, "material = 7 must be text"),
+    ],
+)
+def test_a_fault_names_key_value_and_rule(document: dict[str, object], sentence: str) -> None:
+    (found,) = faults(document, "config")
+    assert found.startswith(sentence)
+
+
+def test_every_fault_is_told_once() -> None:
+    row = {"name": "two words", "L": "x", "W": 1}
+    found = list(faults(row, "designs"))
+    assert len(found) == len(set(found)) == 3
+    assert "H, t, t_n, t_h, t_ab, t_b, N, theta, alpha missing" in found
+
+
+def test_check_names_the_place() -> None:
+    with pytest.raises(
+        InputError, match=r"^my.yaml: mesh = 3 must be .*; paper = 0 must be text\.$"
+    ):
+        check({"mesh": 3, "paper": 0}, "config", "my.yaml")
+
+
+def test_check_each_finds_the_one_that_is_broken() -> None:
+    row = dict.fromkeys(schema("designs")["required"], 1.0) | {"name": "a"}
+    check_each([("row 2", row)], "designs")
+    with pytest.raises(InputError, match=r"^row 3: N = 1\.5 must be a whole number\.$"):
+        check_each([("row 2", row), ("row 3", row | {"N": 1.5})], "designs")
+
+
+def test_defaults_pass_the_schema_they_come_from() -> None:
+    config = defaults(schema("config"))
+    assert list(faults(config, "config")) == []
+    assert config["mesh"]["mesher"] == "gmsh"
