@@ -81,7 +81,7 @@ class Trajectory:
     """Where the sections are at every recorded pressure, and how far they have turned.
 
     stations: the s stations, fixed end first and tip last.
-    pressure_kPa: (p,) recorded pressures, rising.
+    pressure_kPa: (p,) recorded pressures, rising from 0: the unloaded state is the first.
     positions: (p, s, 3) station points on the centre line of the paper plane, in mm.
     rotations: (p, s, 3, 3) frames relative to the fixed end.
     joints: (p, s − 1, 3) rotation vectors (τ, β, γ) of the joints in radians.
@@ -161,9 +161,12 @@ def measure(sections: Sections, pressure_kPa: FloatArray, displacement: FloatArr
     pressure_kPa
         (p,) rising pressures.
     displacement
-        (p, n, 3) displacements of the mesh's nodes at these pressures, in mm; none is needed
-        for zero pressure.
+        (p, n, 3) displacements of the mesh's nodes at these pressures, in mm. Where the first
+        pressure is not 0, the unloaded state is put before it.
     """
+    if len(pressure_kPa) == 0 or pressure_kPa[0] > 0.0:
+        pressure_kPa = np.pad(pressure_kPa, (1, 0))
+        displacement = np.pad(displacement, ((1, 0), (0, 0), (0, 0)))
     positions = np.stack([sections.positions(u) for u in displacement])
     rotations = np.stack([sections.frames(u) for u in displacement])
     # The clamp holds the first section exactly; its strips, of finite length, see some bending.

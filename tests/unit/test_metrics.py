@@ -1,5 +1,7 @@
 """Metrics of displacement fields that are known in closed form."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -51,12 +53,20 @@ def screw(points, twist, bending, sideways=0.0):
 def trajectory(fields, points, faces, stations=None, mirrored=False):
     stations = stations or even_stations(LENGTH, JOINTS + 1)
     sections = place_sections(points, faces, stations, mirrored=mirrored)
-    return measure(sections, np.arange(1.0, len(fields) + 1.0), np.array(fields))
+    found = measure(sections, np.arange(1.0, len(fields) + 1.0), np.array(fields))
+    assert found.pressure_kPa[0] == 0.0
+    # The unloaded state has a test of its own.
+    return dataclasses.replace(
+        found,
+        **{k: getattr(found, k)[1:] for k in ("pressure_kPa", "positions", "rotations", "joints")},
+    )
 
 
 def test_unloaded_actuator_has_no_angles():
     points, faces = paper_mesh()
-    found = trajectory([np.zeros_like(points)], points, faces)
+    sections = place_sections(points, faces, even_stations(LENGTH, JOINTS + 1), mirrored=False)
+    found = measure(sections, np.empty(0), np.empty((0, *points.shape)))
+    assert found.pressure_kPa == pytest.approx([0.0])
     assert np.abs(found.joints).max() < 1e-9
     np.testing.assert_allclose(found.positions[0, -1], TIP, atol=1e-9)
     assert found.chord_deg == pytest.approx(0.0)

@@ -1,0 +1,150 @@
+"""What the stages left behind for one design, as the pictures need it. All reading is here."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.design import Design
+from pagd.errors import InputError
+from pagd.mesh.types import Mesh
+from pagd.record import RECORD_NAME, Record, read_record
+from pagd.tables import read_table
+
+FloatArray = NDArray[np.float64]
+
+__all__ = [
+    "STAGES",
+    "Path3D",
+    "States",
+    "has_states",
+    "has_trajectory",
+    "load_design",
+    "load_mesh",
+    "load_records",
+    "load_states",
+    "load_trajectory",
+    "stl_paths",
+]
+
+#: Folders of a design, in the order the stages run.
+STAGES = ("geometry", "repair", "mesh", "solve", "metrics")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class States:
+    """Deformed states of one design, the unloaded one first.
+
+    mesh: the mesh they are on.
+    pressure_kPa: (p,) rising, from 0.
+    displacement: (p, n, 3) in mm.
+    strain: (p, n) largest principal logarithmic strain.
+    """
+
+    mesh: Mesh
+    pressure_kPa: FloatArray
+    displacement: NDArray[np.float32]
+    strain: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Path3D:
+    """Trajectory of one design: s stations at p pressures, the unloaded state first.
+
+    pressure_kPa: (p,) rising, from 0.
+    positions: (p, s, 3) in mm; bending_deg, twist_deg: (p, s).
+    """
+
+    pressure_kPa: FloatArray
+    positions: FloatArray
+    bending_deg: FloatArray
+    twist_deg: FloatArray
+
+
+def load_records(folder: Path) -> dict[str, Record]:
+    """Return the records of a design's stages that there are, by stage, in order."""
+    paths = {stage: folder / stage for stage in STAGES}
+    return {s: read_record(p) for s, p in paths.items() if (p / RECORD_NAME).is_file()}
+
+
+def load_design(folder: Path) -> Design | None:
+    """Return the design, or None where a user's own mesh was solved instead."""
+    path = folder / "geometry" / "design.json"
+    if not path.is_file():
+        return None
+    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    names = ("name", "origin")
+    return Design.from_mapping({k: v for k, v in content.items() if k not in names})
+
+
+def stl_paths(folder: Path) -> tuple[Path, Path] | None:
+    """Return the surfaces of body and base, repaired if possible, or None."""
+    for stage in ("repair", "geometry"):
+        pair = folder / stage / "body.stl", folder / stage / "base.stl"
+        if all(path.is_file() for path in pair):
+            return pair
+    return None
+
+
+def load_mesh(folder: Path) -> Mesh:
+    """Return the mesh of a design; InputError if there is none."""
+    from pagd.mesh.msh import read_msh  # imports gmsh
+
+    return read_msh(folder / "mesh" / "mesh.msh")
+
+
+def has_states(folder: Path) -> bool:
+    """Tell whether the design has a mesh and deformed states."""
+    return all((folder / n).is_file() for n in ("mesh/mesh.msh", "solve/states.parquet"))
+
+
+def has_trajectory(folder: Path) -> bool:
+    """Tell whether the design has a trajectory."""
+    return (folder / "metrics" / "trajectory.parquet").is_file()
+
+
+def load_states(folder: Path) -> States:
+    """Return the mesh and the deformed states of a design.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, or mesh and states do not belong together.
+    """
+    mesh = load_mesh(folder)
+    path = folder / "solve" / "states.parquet"
+    table = read_table(path)
+    count, nodes = len(table["node"]), len(mesh.points)
+    if count % nodes or not np.array_equal(table["node"], np.arange(count) % nodes):
+        raise InputError(f"{path}: does not hold one row for each of the mesh's {nodes} nodes.")
+    pressure = table["pressure_kPa"][::nodes]
+    shape = (len(pressure), nodes)
+    moved = np.stack([table[k].reshape(shape) for k in ("ux", "uy", "uz")], axis=-1)
+    return _from_zero(States(mesh, pressure, moved, table["strain"].reshape(shape)))
+
+
+def load_trajectory(folder: Path) -> Path3D:
+    """Return the trajectory of a design; InputError if there is none."""
+    table = read_table(folder / "metrics" / "trajectory.parquet")
+    pressure = np.unique(table["pressure_kPa"])
+    shape = (len(pressure), -1)
+    order = np.lexsort((table["station"], table["pressure_kPa"]))
+    column = {name: values[order].reshape(shape) for name, values in table.items()}
+    positions = np.stack([column[f"{axis}_mm"] for axis in "xyz"], axis=-1)
+    return Path3D(pressure, positions, column["bending_deg"], column["twist_deg"])
+
+
+def _from_zero(states: States) -> States:
+    if len(states.pressure_kPa) and states.pressure_kPa[0] == 0.0:
+        return states
+    return States(
+        states.mesh,
+        np.pad(states.pressure_kPa, (1, 0)),
+        np.pad(states.displacement, ((1, 0), (0, 0), (0, 0))),
+        np.pad(states.strain, ((1, 0), (0, 0))),
+    )

@@ -1,0 +1,93 @@
+"""How the pictures look: colours, type, and the one way they are saved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from matplotlib import style
+from matplotlib.colors import LinearSegmentedColormap
+
+from pagd.files import replaced_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "BASE",
+    "CAVITY",
+    "CUT",
+    "ELASTOMER",
+    "FAINT",
+    "INK",
+    "PAPER",
+    "STRAIN_COLOURS",
+    "STRAIN_LABEL",
+    "STRAIN_MAP",
+    "design_colours",
+    "new_figure",
+    "save",
+]
+
+INK = "#1d2733"
+FAINT = "#8a94a0"
+ELASTOMER = "#a9cbe0"
+BASE = "#7fa6c4"
+CUT = "#5f8db3"
+CAVITY = "#f6e3c5"
+PAPER = "#f0b429"
+# From cream, like the unstrained elastomer, to dark: lightness falls steadily, so that the map
+# also reads in grey, and shading stays visible on its light half.
+STRAIN_COLOURS = ("#f3ecdc", "#f7cf86", "#f0863f", "#c4303f", "#64123f")
+STRAIN_MAP = LinearSegmentedColormap.from_list("strain", STRAIN_COLOURS)
+STRAIN_LABEL = "largest principal logarithmic strain"
+
+# Okabe and Ito's colours, which also readers with a colour deficiency tell apart.
+_CYCLE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+
+_LOOK: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "text.color": INK,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#e3e7eb",
+    "grid.linewidth": 0.7,
+    "xtick.color": FAINT,
+    "ytick.color": FAINT,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "figure.facecolor": "white",
+    "savefig.dpi": 150,
+}
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of `width` × `height` inches, without any display behind it."""
+    from matplotlib.figure import Figure
+
+    style.use(_LOOK)
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def save(figure: Figure, out: Path) -> None:
+    """Write a figure as PNG; the file appears complete or not at all.
+
+    Neither date nor program name goes in, so that equal pictures are equal files.
+    """
+    with replaced_file(out) as temporary:
+        figure.savefig(temporary, format="png", metadata={"Software": None})
+
+
+def design_colours(names: Sequence[str]) -> dict[str, str]:
+    """Return a colour a design, in their order."""
+    return {name: _CYCLE[i % len(_CYCLE)] for i, name in enumerate(names)}
