@@ -1,0 +1,102 @@
+"""Sum of energy terms: from element systems to one residual and one sparse matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.fem.compiled import compiled
+from pagd.fem.pattern import Pattern, build_pattern
+from pagd.fem.term import ElementSystem, EnergyTerm
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A point of the load path: load factor, all unknowns, internal variables per term."""
+
+    load: float
+    unknowns: FloatArray
+    internal: tuple[FloatArray, ...]
+
+
+@compiled
+def _add_vector(dofs: IntArray, local: FloatArray, result: FloatArray) -> None:
+    for e in range(dofs.shape[0]):
+        for i in range(dofs.shape[1]):
+            result[dofs[e, i]] += local[e, i]
+
+
+@compiled
+def _add_matrix(positions: NDArray[np.int32], local: FloatArray, result: FloatArray) -> None:
+    for e in range(positions.shape[0]):
+        for i in range(positions.shape[1]):
+            result[positions[e, i]] += local[e, i]
+
+
+class Assembly:
+    """A body as a sum of terms, with some unknowns held.
+
+    Parameters
+    ----------
+    terms
+        The energy terms.
+    size
+        Number of unknowns: three displacements per node, then whatever terms add.
+    fixed
+        Which unknowns (size,) are held at the values of the state.
+    """
+
+    def __init__(self, terms: Sequence[EnergyTerm], size: int, fixed: BoolArray) -> None:
+        self.terms = tuple(terms)
+        self.size = size
+        self.free = np.flatnonzero(~fixed)
+        numbering = np.full(size, -1, np.int64)
+        numbering[self.free] = np.arange(len(self.free))
+        self.pattern: Pattern = build_pattern([t.dofs for t in terms], numbering)
+        self._systems = [ElementSystem.of(t.dofs) for t in terms]
+        # One more place than there are entries: what concerns held unknowns goes there.
+        self._values = np.empty(self.pattern.entries + 1)
+
+    def at_rest(self) -> State:
+        """The undeformed, unloaded state."""
+        return State(0.0, np.zeros(self.size), tuple(t.internal_at_rest() for t in self.terms))
+
+    def linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
+        """Energy, residual (size,) and matrix values (z,) of the pattern.
+
+        Where the energy is infinite the state is inadmissible and the rest not to be used.
+        """
+        energy = 0.0
+        residual = np.zeros(self.size)
+        self._values[:] = 0.0
+        parts = zip(self.terms, state.internal, self._systems, self.pattern.maps, strict=True)
+        for term, internal, system, positions in parts:
+            energy += term.linearize(state.unknowns, internal, state.load, system)
+            if not np.isfinite(energy):
+                return np.inf, residual, self._values[:-1]
+            _add_vector(term.dofs, system.residual, residual)
+            _add_matrix(positions, system.tangent, self._values)
+        return energy, residual, self._values[:-1]
+
+    def advance(self, state: State, correction: FloatArray) -> State:
+        """The state after ``correction`` (size,) of the unknowns, at the same load.
+
+        To be called after :meth:`linearize` at ``state``.
+        """
+        internal = tuple(term.advance(correction) for term in self.terms)
+        return State(state.load, state.unknowns + correction, internal)
+
+    def energies(self, state: State) -> dict[str, float]:
+        """Energy of each term by name, in mJ; terms of one name are added up."""
+        result: dict[str, float] = {}
+        for term in self.terms:
+            value = term.energy(state.unknowns, state.load)
+            result[term.name] = result.get(term.name, 0.0) + value
+        return result

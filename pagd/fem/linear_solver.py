@@ -1,0 +1,182 @@
+"""Sparse symmetric indefinite systems: MKL Pardiso where it exists, SciPy elsewhere.
+
+Both stand behind :class:`LinearSolver`: analyse the pattern once, factorise as
+often as the values change, solve as often as the right-hand side does.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.errors import InputError
+
+FloatArray = NDArray[np.float64]
+Int32Array = NDArray[np.int32]
+
+
+class SingularMatrixError(ArithmeticError):
+    """The matrix cannot be factorised."""
+
+
+class LinearSolver(Protocol):
+    """Solves A x = b for the upper triangle of A in CSR form."""
+
+    name: str
+
+    def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
+        """Take a pattern: row starts (m + 1,) and sorted columns (z,), the diagonal included."""
+        ...
+
+    def solve(self, values: FloatArray, right: FloatArray) -> FloatArray:
+        """Factorise the matrix of ``values`` (z,) and solve for ``right`` (m,).
+
+        Raises ``SingularMatrixError``.
+        """
+        ...
+
+    def free(self) -> None:
+        """Give the memory back."""
+        ...
+
+
+class PardisoSolver:
+    """MKL Pardiso through the library that pypardiso finds.
+
+    The entry point is called directly: pypardiso's own ``solve`` takes no
+    symmetric matrices and copies and compares the matrix at every call.
+    """
+
+    name = "pardiso"
+
+    # Indices of Pardiso's parameters, counted from zero (oneMKL reference, "pardiso
+    # iparm Parameter").
+    _PARAMETERS = {
+        0: 1,  # the values below, not the defaults
+        1: 2,  # nested dissection (METIS), the quicker in factorisation here
+        7: 2,  # at most two steps of iterative refinement
+        9: 8,  # perturb pivots below 1e-8: the default of symmetric indefinite matrices
+        10: 1,  # scaling and
+        12: 1,  # weighted matching: the block of the pressures has a tiny diagonal
+        23: 1,  # two-level factorisation
+        34: 1,  # zero-based indices
+    }
+    _SYMMETRIC_INDEFINITE = -2
+    _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
+
+    def __init__(self) -> None:
+        from pypardiso import PyPardisoSolver
+
+        self._call = PyPardisoSolver(mtype=self._SYMMETRIC_INDEFINITE)._mkl_pardiso
+        self._handle = np.zeros(64, np.int64)
+        self._parameters = np.zeros(64, np.int32)
+        for index, value in self._PARAMETERS.items():
+            self._parameters[index] = value
+        self._analysed = False
+        self._starts = self._columns = np.zeros(0, np.int32)
+
+    def _phase(self, phase: int, values: FloatArray, right: FloatArray) -> FloatArray:
+        result = np.zeros_like(right)
+        error = ctypes.c_int32(0)
+        one, size = ctypes.c_int32(1), ctypes.c_int32(len(self._starts) - 1)
+        kind, silent = ctypes.c_int32(self._SYMMETRIC_INDEFINITE), ctypes.c_int32(0)
+        number = ctypes.POINTER(ctypes.c_int32)
+        self._call(
+            self._handle.ctypes.data_as(ctypes.POINTER(ctypes.c_int64)),
+            ctypes.byref(one),
+            ctypes.byref(one),
+            ctypes.byref(kind),
+            ctypes.byref(ctypes.c_int32(phase)),
+            ctypes.byref(size),
+            values.ctypes.data,
+            self._starts.ctypes.data_as(number),
+            self._columns.ctypes.data_as(number),
+            ctypes.byref(ctypes.c_int32(0)),
+            ctypes.byref(one),
+            self._parameters.ctypes.data_as(number),
+            ctypes.byref(silent),
+            right.ctypes.data,
+            result.ctypes.data,
+            ctypes.byref(error),
+        )
+        if error.value:
+            raise SingularMatrixError(f"Pardiso ended phase {phase} with error {error.value}")
+        return result
+
+    def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
+        """Take a new pattern; the symbolic factorisation waits for the first values."""
+        self.free()
+        self._starts, self._columns = starts, columns
+
+    def solve(self, values: FloatArray, right: FloatArray) -> FloatArray:
+        """Factorise and solve; the first call after :meth:`analyse` orders the matrix too."""
+        if not np.isfinite(values).all():
+            raise SingularMatrixError("the matrix has entries that are not finite")
+        if not self._analysed:
+            # Matching and scaling look at the values, so the analysis needs them.
+            self._phase(self._ANALYSE, values, right)
+            self._analysed = True
+        self._phase(self._FACTORISE, values, right)
+        return self._phase(self._SOLVE, values, right)
+
+    def free(self) -> None:
+        """Give the memory of the factors back."""
+        if self._analysed:
+            empty = np.zeros(1)
+            self._phase(self._RELEASE, empty, empty)
+            self._analysed = False
+
+
+class SuperLUSolver:
+    """SciPy's SuperLU; works everywhere, several times slower."""
+
+    name = "superlu"
+
+    def __init__(self) -> None:
+        self._starts = self._columns = np.zeros(0, np.int32)
+
+    def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
+        """Take a pattern; SuperLU orders it anew at each factorisation."""
+        self._starts, self._columns = starts, columns
+
+    def solve(self, values: FloatArray, right: FloatArray) -> FloatArray:
+        """Factorise and solve."""
+        from scipy.sparse import csc_array, csr_array
+        from scipy.sparse.linalg import splu
+
+        size = len(self._starts) - 1
+        upper = csr_array((values, self._columns, self._starts), shape=(size, size))
+        diagonal = csr_array((upper.diagonal(), (np.arange(size), np.arange(size))))
+        full = csc_array(upper + upper.T - diagonal)
+        try:
+            result = splu(full, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01).solve(right)
+        except RuntimeError as error:
+            raise SingularMatrixError(str(error)) from None
+        return np.asarray(result)
+
+    def free(self) -> None:
+        """Nothing is kept between calls."""
+
+
+_SOLVERS: dict[str, Callable[[], LinearSolver]] = {
+    "pardiso": PardisoSolver,
+    "superlu": SuperLUSolver,
+}
+
+
+def linear_solver(name: str = "auto") -> LinearSolver:
+    """Make a solver by name; ``auto`` takes Pardiso where MKL can be loaded."""
+    if name == "auto":
+        try:
+            return PardisoSolver()
+        except ImportError:
+            return SuperLUSolver()
+    if name not in _SOLVERS:
+        raise InputError(
+            f"linear_solver is {name!r}, but must be one of auto, {', '.join(sorted(_SOLVERS))}"
+        )
+    return _SOLVERS[name]()

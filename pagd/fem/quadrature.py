@@ -1,0 +1,49 @@
+"""Quadrature rules on the reference tetrahedron and triangle.
+
+Points are given in barycentric coordinates, weights add up to one: they are
+shares of the element's volume or area. Sources: Keast, *Comput. Methods Appl.
+Mech. Eng.* 55 (1986) 339, rule of degree 2; Dunavant, *Int. J. Numer. Methods
+Eng.* 21 (1985) 1129, rules of degree 2 and 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Quadrature:
+    """Points (n, corners) in barycentric coordinates and weights (n,) that add up to one."""
+
+    points: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+
+def _orbit(*coordinates: float) -> list[tuple[float, ...]]:
+    """All distinct permutations of one point, in a fixed order."""
+    return sorted(set(permutations(coordinates)))
+
+
+def tetrahedron() -> Quadrature:
+    """Four points, degree 2: the rule of quadratic tetrahedra."""
+    near, far = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
+    return Quadrature(np.array(_orbit(near, far, far, far))[::-1].copy(), np.full(4, 0.25))
+
+
+def triangle(degree: int) -> Quadrature:
+    """Three points (degree 2) or six points (degree 4).
+
+    Raises ``ValueError`` for any other degree.
+    """
+    if degree == 2:
+        return Quadrature(np.array(_orbit(2 / 3, 1 / 6, 1 / 6)), np.full(3, 1 / 3))
+    if degree != 4:
+        raise ValueError(f"no triangle rule of degree {degree}; there are 2 and 4")
+    inner, outer = 0.445948490915965, 0.091576213509771
+    points = _orbit(1 - 2 * inner, inner, inner) + _orbit(1 - 2 * outer, outer, outer)
+    weights = np.repeat([0.223381589678011, 0.109951743655322], 3)
+    return Quadrature(np.array(points), weights / weights.sum())

@@ -1,0 +1,81 @@
+"""What an energy term is: the one interface everything that does work goes through.
+
+The potential of a body is a sum of terms. Each term sees the whole vector of
+unknowns through small elements: it yields their energy, their residual (first
+derivative) and their tangent (second derivative, symmetric, upper triangle
+only). A term may also own *internal variables*, quantities iterated beside the
+unknowns and condensed out element by element, such as an element pressure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class ElementSystem:
+    """Residuals (elements, size) and packed upper triangles (elements, size (size + 1)/2).
+
+    The triangle is stored row by row: entry (i, j ≥ i) of an element stands at
+    i size − i (i − 1)/2 + j − i.
+    """
+
+    residual: FloatArray
+    tangent: FloatArray
+
+    @classmethod
+    def of(cls, dofs: IntArray) -> ElementSystem:
+        """Room for the elements whose unknowns are ``dofs`` (elements, size)."""
+        count, size = dofs.shape
+        return cls(np.zeros((count, size)), np.zeros((count, size * (size + 1) // 2)))
+
+
+class EnergyTerm(Protocol):
+    """One part of the potential."""
+
+    name: str
+
+    @property
+    def dofs(self) -> IntArray:
+        """Numbers (elements, size) of the unknowns each element sees."""
+        ...
+
+    def internal_at_rest(self) -> FloatArray:
+        """The internal variables of the undeformed body; an empty array where there are none."""
+        ...
+
+    def linearize(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
+    ) -> float:
+        """Fill ``system`` at the given state and return the energy.
+
+        The energy is infinite, and ``system`` not to be used, where the state is
+        inadmissible: an inverted element, a law beyond its limit.
+        """
+        ...
+
+    def advance(self, correction: FloatArray) -> FloatArray:
+        """Internal variables after ``correction`` of all unknowns.
+
+        To be called after :meth:`linearize`, whose state the correction starts from.
+        """
+        ...
+
+    def energy(self, unknowns: FloatArray, load: float) -> float:
+        """The energy alone, internal variables taken as consistent with the unknowns."""
+        ...
+
+
+def node_dofs(nodes: IntArray) -> IntArray:
+    """Numbers (elements, 3·nodes) of the displacements of nodes (elements, nodes), x y z apiece."""
+    return np.asarray((nodes[:, :, None] * 3 + np.arange(3)).reshape(len(nodes), -1))
+
+
+NO_INTERNAL: FloatArray = np.zeros(0)
