@@ -37,19 +37,19 @@ mapfile -t packages < <(missing_packages)
 
 command -v apt-get >/dev/null ||
     refuse "This system has no apt-get: please install what corresponds here to"
-as_root=()
+as_root=(env DEBIAN_FRONTEND=noninteractive)
 if ((EUID)); then
     # Without a terminal nobody can type the password.
     { [ -t 0 ] && command -v sudo >/dev/null; } || sudo -n true 2>/dev/null ||
         refuse "Only root may install them. Please ask an administrator for"
-    as_root=(sudo)
+    as_root=(sudo "${as_root[@]}")
 fi
+apt_get=("${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300)
+
 echo "Installing system packages: ${packages[*]}"
-install() {
-    # First finish what an interrupted installation may have left; wait for others who install.
-    "${as_root[@]}" dpkg --configure -a
-    "${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 \
-        install --no-install-recommends "${packages[@]}" >/dev/null
-}
-install || refuse "Installing them failed, see above. Please try again by hand:"
+{
+    # First finish what an interrupted installation may have left.
+    "${as_root[@]}" dpkg --configure -a &&
+        "${apt_get[@]}" update &&
+        "${apt_get[@]}" install --no-install-recommends "${packages[@]}"
+} >/dev/null || refuse "Installing them failed, see above. Please try again by hand:"
