@@ -14,6 +14,7 @@ from pagd.design import Design
 from pagd.errors import InputError
 from pagd.mesh.types import Mesh
 from pagd.record import RECORD_NAME, Record, read_record
+from pagd.states import read_states
 from pagd.tables import read_table
 
 FloatArray = NDArray[np.float64]
@@ -48,8 +49,8 @@ class States:
 
     mesh: Mesh
     pressure_kPa: FloatArray
-    displacement: NDArray[np.float32]
-    strain: NDArray[np.float32]
+    displacement: FloatArray
+    strain: FloatArray
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -118,14 +119,10 @@ def load_states(folder: Path) -> States:
     """
     mesh = load_mesh(folder)
     path = folder / "solve" / "states.parquet"
-    table = read_table(path)
-    count, nodes = len(table["node"]), len(mesh.points)
-    if count % nodes or not np.array_equal(table["node"], np.arange(count) % nodes):
-        raise InputError(f"{path}: does not hold one row for each of the mesh's {nodes} nodes.")
-    pressure = table["pressure_kPa"][::nodes]
-    shape = (len(pressure), nodes)
-    moved = np.stack([table[k].reshape(shape) for k in ("ux", "uy", "uz")], axis=-1)
-    return _from_zero(States(mesh, pressure, moved, table["strain"].reshape(shape)))
+    found = read_states(path)
+    if found.strain.shape[1:] != mesh.points.shape[:1]:
+        raise InputError(f"{path}: does not hold one row for each of {len(mesh.points)} nodes.")
+    return _from_zero(States(mesh, found.pressure_kPa, found.displacement, found.strain))
 
 
 def load_trajectory(folder: Path) -> Path3D:

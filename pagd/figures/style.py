@@ -22,6 +22,7 @@ __all__ = [
     "FAINT",
     "INK",
     "PAPER",
+    "PRESSURE_MAP",
     "STRAIN_COLOURS",
     "STRAIN_LABEL",
     "STRAIN_MAP",
@@ -41,6 +42,7 @@ PAPER = "#f0b429"
 # also reads in grey, and shading stays visible on its light half.
 STRAIN_COLOURS = ("#f3ecdc", "#f7cf86", "#f0863f", "#c4303f", "#64123f")
 STRAIN_MAP = LinearSegmentedColormap.from_list("strain", STRAIN_COLOURS)
+PRESSURE_MAP = "viridis"
 STRAIN_LABEL = "largest principal logarithmic strain"
 
 # Okabe and Ito's colours, which also readers with a colour deficiency tell apart.
