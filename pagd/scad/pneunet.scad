@@ -167,13 +167,13 @@ module paper() {
         plate([for (p = base_line) [p.x, -p.y / 2]], [for (p = base_line) [p.x, -p.y / 2 - 0.2]]);
 }
 
-// The children, or their half with y > 0.
+// The children, or their half with y > 0. The box is cut with in both cases: OpenSCAD rounds a
+// shape that no cut is made in to multiples of 1e-6 mm, and body and base would no longer meet.
 module halved() {
-    if (half) intersection() {
+    intersection() {
         children();
-        translate([-L, 0, -2 * (H + t_b)]) cube([L_T + 2 * L, W, 4 * (H + t_b)]);
+        translate([-L, half ? 0 : -W, -2 * (H + t_b)]) cube([L_T + 2 * L, 2 * W, 4 * (H + t_b)]);
     }
-    else children();
 }
 
 if (part == "body") halved() body();
