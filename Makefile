@@ -49,4 +49,5 @@ system-packages:
 
 .venv/pagd-installed: pyproject.toml .venv/packages-installed
 	@pip --disable-pip-version-check -qq install --no-deps --no-build-isolation --editable .
+	@pip --quiet check
 	@touch $@

@@ -9,4 +9,3 @@ echo "Installing the Python packages of requirements.lock into .venv (takes a mi
 rm -rf .venv
 "$python" -m venv .venv
 .venv/bin/python -m pip --disable-pip-version-check -qq install --no-deps -r requirements.lock
-.venv/bin/python -m pip --quiet check
