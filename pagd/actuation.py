@@ -217,9 +217,7 @@ class Body:
         """Cavity volume in mm³ and stored energy in mJ, of the whole actuator."""
         volume = self.pressure.volume(unknowns)
         stored = sum(
-            term.energy(unknowns, load)
-            for term in self.assembly.terms
-            if term is not self.pressure
+            term.energy(unknowns, load) for term in self.assembly.terms if term is not self.pressure
         )
         return self.copies * volume, self.copies * stored
 
@@ -328,7 +326,8 @@ def use_threads(count: int) -> None:
     To be called before the first analysis: MKL reads its setting when it is loaded.
     """
     import numba
+    from numba import config
 
     for variable in ("MKL_NUM_THREADS", "OMP_NUM_THREADS"):
         os.environ[variable] = str(count)
-    numba.set_num_threads(min(count, numba.config.NUMBA_NUM_THREADS))
+    numba.set_num_threads(min(count, config.NUMBA_NUM_THREADS))

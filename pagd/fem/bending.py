@@ -78,7 +78,7 @@ def _triangles(points: FloatArray, faces: IntArray) -> _Triangles:
     hessians = np.einsum(
         "apq,tpi,tqj->taij", shapes.triangle_hessians(), inverse, inverse, optimize=True
     )
-    areas = np.abs(np.linalg.det(jacobian)) / 2
+    areas = np.asarray(np.abs(np.linalg.det(jacobian)) / 2, dtype=np.float64)
     return _Triangles(frame, corners, areas, inverse, hessians)
 
 

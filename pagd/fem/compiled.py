@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -16,13 +16,15 @@ _FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 def compiled(function: Function) -> Function:
     """Compile ``function`` for one thread; the machine code is cached on disk."""
-    result: Function = numba.njit(cache=True, fastmath=_FAST, error_model="numpy")(function)
-    return result
+    return _compile(function, parallel=False)
 
 
 def compiled_parallel(function: Function) -> Function:
     """Compile ``function`` with its ``prange`` loops spread over the threads of Numba."""
-    result: Function = numba.njit(cache=True, fastmath=_FAST, error_model="numpy", parallel=True)(
-        function
-    )
-    return result
+    return _compile(function, parallel=True)
+
+
+def _compile(function: Function, parallel: bool) -> Function:
+    # A compiled function is called as the plain one is, and typed as such.
+    decorate = numba.njit(cache=True, fastmath=_FAST, error_model="numpy", parallel=parallel)
+    return cast(Function, decorate(function))

@@ -86,14 +86,12 @@ def _ogden_axes(
 
 
 @compiled
-def _shear_slope(
-    squares: FloatArray, beta: FloatArray, gamma: FloatArray, a: int, c: int
-) -> float:
+def _shear_slope(squares: FloatArray, beta: FloatArray, gamma: FloatArray, a: int, c: int) -> float:
     """(β_a λ_c² − β_c λ_a²) / (λ_a² − λ_c²), by its limit where the stretches meet."""
     difference = squares[a] - squares[c]
     if abs(difference) > 1e-6 * (squares[a] + squares[c]):
-        return (beta[a] * squares[c] - beta[c] * squares[a]) / difference
-    return 0.25 * (gamma[a] + gamma[c]) - 0.5 * (beta[a] + beta[c])
+        return float((beta[a] * squares[c] - beta[c] * squares[a]) / difference)
+    return float(0.25 * (gamma[a] + gamma[c]) - 0.5 * (beta[a] + beta[c]))
 
 
 @compiled

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,7 @@ class PardisoSolver:
 
     # Indices of Pardiso's parameters, counted from zero (oneMKL reference, "pardiso
     # iparm Parameter").
-    _PARAMETERS = {
+    _PARAMETERS: ClassVar[dict[int, int]] = {
         0: 1,  # the values below, not the defaults
         1: 2,  # nested dissection (METIS), the quicker in factorisation here
         7: 2,  # at most two steps of iterative refinement

@@ -52,7 +52,7 @@ def inverse(matrix: FloatArray, result: FloatArray) -> float:
     for i in range(3):
         for j in range(3):
             result[i, j] *= scale
-    return determinant
+    return float(determinant)
 
 
 @compiled
@@ -255,9 +255,7 @@ def taylor_hood(
                 total += energy + weight * pressure * (ratio - 1.0 - 0.5 * pressure / bulk_modulus)
                 for c in range(4):
                     value = corner_values[q, c]
-                    residual[e, 30 + c] += (
-                        weight * value * (ratio - 1.0 - pressure / bulk_modulus)
-                    )
+                    residual[e, 30 + c] += weight * value * (ratio - 1.0 - pressure / bulk_modulus)
                     for i in range(30):
                         matrix[i, 30 + c] += value * slope[i]
                     for d in range(c, 4):
@@ -380,6 +378,4 @@ def energies(
                 isochoric[e] = np.inf
                 continue
             isochoric_left_stretch(gradient, ratio, b)
-            isochoric[e] += weights[e, q] * deviatoric_response(
-                law, parameters, b, stress, tangent
-            )
+            isochoric[e] += weights[e, q] * deviatoric_response(law, parameters, b, stress, tangent)
