@@ -330,4 +330,4 @@ def use_threads(count: int) -> None:
 
     for variable in ("MKL_NUM_THREADS", "OMP_NUM_THREADS"):
         os.environ[variable] = str(count)
-    numba.set_num_threads(min(count, config.NUMBA_NUM_THREADS))
+    numba.set_num_threads(min(count, config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]

@@ -74,7 +74,7 @@ def _triangles(points: FloatArray, faces: IntArray) -> _Triangles:
     frame = _plane(points[np.unique(faces)])
     corners = points[faces[:, :3]] @ frame.T
     jacobian = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
-    inverse = np.linalg.inv(jacobian)
+    inverse = np.asarray(np.linalg.inv(jacobian), dtype=np.float64)
     hessians = np.einsum(
         "apq,tpi,tqj->taij", shapes.triangle_hessians(), inverse, inverse, optimize=True
     )
