@@ -28,7 +28,7 @@ lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff format --check .
 	mypy
 	snakefmt --check Snakefile workflow
-	snakemake --lint
+	python .ci/lint_workflow.py
 
 clean: ## Remove results and caches; the environment stays.
 	find results -mindepth 1 ! -name README.md -delete
