@@ -58,7 +58,7 @@ class PardisoSolver:
     _PARAMETERS: ClassVar[dict[int, int]] = {
         0: 1,  # the values below, not the defaults
         1: 2,  # nested dissection (METIS), the quicker in factorisation here
-        7: 2,  # at most two steps of iterative refinement
+        7: 0,  # refine only where pivots were perturbed
         9: 8,  # perturb pivots below 1e-8: the default of symmetric indefinite matrices
         10: 1,  # scaling and
         12: 1,  # weighted matching: the block of the pressures has a tiny diagonal
