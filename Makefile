@@ -21,7 +21,7 @@ run: .venv/pagd-installed ## Take the designs of the configuration from paramete
 
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.
-	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --numprocesses $(CORES) --dist loadscope
+	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --hypothesis-profile ci --numprocesses $(CORES) --dist loadscope
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .
