@@ -170,6 +170,8 @@ def _clean(meshes: Any, max_hole_edges: int, merge_distance: float) -> dict[str,
     equal, null_1 = _losses(meshes, meshes.meshing_remove_duplicate_vertices)
     moved, null_2 = _losses(meshes, lambda: meshes.meshing_merge_close_vertices(threshold=near))
     _, duplicates = _losses(meshes, meshes.meshing_remove_duplicate_faces)
+    if meshes.current_mesh().face_number() == 0:
+        raise _failure("the file holds no triangles with an area")
     _require_simple_edges(meshes)
     # pymeshlab closes holes with fewer edges than the number it is given.
     holes = meshes.meshing_close_holes(maxholesize=max_hole_edges + 1)["closed_holes"]
@@ -237,8 +239,6 @@ def _count_slivers(points: FloatArray, faces: NDArray[np.integer[Any]]) -> int:
 def _require_sound(meshes: Any) -> None:
     """Fail unless the surface is closed, two-manifold and free of self-intersections."""
     mesh = meshes.current_mesh()
-    if mesh.face_number() == 0:
-        raise _failure("no triangles are left")
     edges, counts = _edges(mesh)
     border = edges[counts == 1]
     if len(border):

@@ -12,7 +12,7 @@ from pagd.errors import InputError, StageFailure, Status
 
 __all__ = ["Channel", "GeometryRules", "Limits", "Violation", "check", "violations"]
 
-# 5.04 - 2 * 1.52 is not 2 in floating point, and no reader would understand the refusal.
+# 3.76 - 2 * 0.88 is not 2 in floating point, and no reader would understand the refusal.
 _ROUNDING = 1e-9
 
 

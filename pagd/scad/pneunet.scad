@@ -70,6 +70,8 @@ N1 = floor(alpha * N + 0.5);                // helical chambers; the other N - N
 half_skew = N1 > 0 ? W / 2 * tan(theta) : 0; // how far a slanted corner runs ahead
 gap_floor = channel_height + channel_roof;
 L_T = start(N - 1) + L + skew(N - 1) * W / 2;
+// As wide as the channel means exactly as wide: 3.76 - 2 * 0.88 is a hair under 2.
+cavity_width = abs(W - 2 * t - channel_width) < 1e-9 ? channel_width : W - 2 * t;
 
 function is_helical(i) = i < N1;
 function skew(i) = is_helical(i) ? tan(theta) : 0;             // dx/dy of chamber i
@@ -88,7 +90,7 @@ base_line = len(t_b_each) == 0 ? [[0, t_b], [L_T, t_b]]
 
 for (i = [0:N - 1])
     assert(L > 2 * wall(i), "L: the walls t_ab leave no room for air");
-assert(W - 2 * t >= channel_width, "W: the side walls leave no room for the channel");
+assert(cavity_width >= channel_width, "W: the side walls leave no room for the channel");
 assert(H - t_h > channel_height, "H: the roof reaches down into the channel");
 assert(H > gap_floor, "H: the chambers do not stand out above the floor of the gaps");
 
@@ -134,7 +136,7 @@ module plate(upper, lower) {
 // out of them on the far side.
 module cavity() {
     for (i = [0:N - 1])
-        sheared_box(start(i) + wall(i), start(i) + L - wall(i), W - 2 * t, 0, H - t_h,
+        sheared_box(start(i) + wall(i), start(i) + L - wall(i), cavity_width, 0, H - t_h,
                     skew(i), skew(i));
     if (N > 1)
         sheared_box(middle(0), middle(N - 1), channel_width, 0, channel_height,
