@@ -45,6 +45,8 @@ from pagd.sections import Sections, Stations
 FloatArray = NDArray[np.float64]
 MeasuredMode = Literal["bending", "twisting", "mixed", "none"]
 
+_ROUND_OFF_MJ = 1e-9
+
 __all__ = [
     "MeasuredMode",
     "Thresholds",
@@ -227,9 +229,14 @@ def work_of_pressure(pressure_kPa: FloatArray, volume_mm3: FloatArray) -> FloatA
 
 
 def energy_balance(work_mJ: FloatArray, stored_mJ: FloatArray) -> FloatArray:
-    """Return |∫ p dV − U| / U for the stored energy U, element by element; 0 where U = 0 = ∫."""
+    """Return |∫ p dV − U| / U for the stored energy U, element by element.
+
+    Energies below 1e-9 mJ are round-off of an unloaded state: 0 there, and infinite for work that
+    nothing stores.
+    """
     gap = np.abs(work_mJ - stored_mJ)
-    return np.divide(gap, stored_mJ, out=np.where(gap > 0.0, np.inf, 0.0), where=stored_mJ > 0.0)
+    unloaded = np.where(gap > _ROUND_OFF_MJ, np.inf, 0.0)
+    return np.divide(gap, stored_mJ, out=unloaded, where=stored_mJ > _ROUND_OFF_MJ)
 
 
 def work_density(work_mJ: FloatArray, solid_volume_mm3: float) -> FloatArray:

@@ -280,8 +280,8 @@ def test_work_of_a_linear_cavity_is_exact():
 
 
 def test_energy_balance_is_relative_to_the_stored_energy():
-    balance = energy_balance(np.array([0.0, 1.0, 99.0]), np.array([0.0, 0.0, 100.0]))
-    np.testing.assert_allclose(balance, [0.0, np.inf, 0.01])
+    balance = energy_balance(np.array([0.0, 0.0, 1.0, 99.0]), np.array([0.0, 1e-13, 0.0, 100.0]))
+    np.testing.assert_allclose(balance, [0.0, 0.0, np.inf, 0.01])
 
 
 def test_performance_takes_the_recorded_steps_of_the_history():
