@@ -19,26 +19,45 @@ FloatArray = NDArray[np.float64]
 class StepControl:
     """How far to step. Loads are in the unit of the load factor (MPa for a pressure).
 
+    The first guess of a step is a polynomial through the last states. Its error, which the first
+    Newton correction measures, grows with the power ``order + 1`` of the step, and the step is
+    chosen so that the error comes out as wanted.
+
     Attributes
     ----------
     first, smallest
         First step, and the step below which the path is given up.
-    growth
-        Factor on the step after a step that took fewer than ``quick`` iterations.
-    cut
-        Factor on the step after a try that did not converge.
-    quick
-        See ``growth``.
+    wanted_correction
+        Largest first correction of a node, in mm, that a step is chosen for.
+    growth, cut
+        Largest factor from one step to the next, and the smallest; after a try that did not
+        converge the factor lies between ``cut`` and ``retry``.
+    retry
+        See above.
     order
-        Degree of the polynomial through the last states that gives the first guess.
+        Degree of the polynomial.
     """
 
-    first: float = 1e-3
+    first: float = 2.5e-4
     smallest: float = 2e-5
-    growth: float = 1.4
-    cut: float = 0.5
-    quick: int = 4
+    wanted_correction: float = 1.0
+    growth: float = 2.0
+    cut: float = 0.25
+    retry: float = 0.6
     order: int = 2
+
+    def next_step(self, taken: float, first_correction: float, states: int) -> float:
+        """The step after one that converged from a guess through ``states`` states."""
+        return taken * min(max(self._factor(first_correction, states), self.cut), self.growth)
+
+    def retry_step(self, taken: float, first_correction: float, states: int) -> float:
+        """The step after one that did not converge."""
+        return taken * min(max(self._factor(first_correction, states), self.cut), self.retry)
+
+    def _factor(self, first_correction: float, states: int) -> float:
+        if not 0 < first_correction < math.inf:
+            return self.cut if first_correction else self.growth
+        return (self.wanted_correction / first_correction) ** (1 / states)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,28 +130,31 @@ class Continuation:
 
         ``observe`` gets every converged step and may return a reason to stop.
         """
+        control = self._control
         path = LoadPath(0.0, 0, 0, 0)
         states = [self._newton.assembly.at_rest()]
-        step = self._control.first
+        step = control.first
         for target in loads:
             while states[-1].load < target:
                 load = _next_load(states[-1].load, target, step)
+                taken, known = load - states[-1].load, len(states)
                 result = self._newton.solve(self._guess(states, load))
+                correction = result.corrections[0] if result.corrections else math.inf
                 path = replace(path, iterations=path.iterations + result.iterations)
-                taken = load - states[-1].load
                 if result.state is None:
-                    step = taken * self._control.cut
+                    step = control.retry_step(taken, correction, known)
                     path = replace(path, rejected=path.rejected + 1)
-                    if step < self._control.smallest:
+                    if step < control.smallest:
                         return replace(path, failure=result.reason)
                     continue
-                states = [*states, result.state][-self._control.order - 1 :]
+                states = [*states, result.state][-control.order - 1 :]
                 path = replace(path, load=load, steps=path.steps + 1)
                 stop = observe(Step(result.state, result.iterations, load == target))
                 if stop:
                     return replace(path, stopped=stop)
-                quick = result.iterations < self._control.quick
-                step = step * self._control.growth if quick else taken
+                # A step shortened only to land on a wanted load does not shorten the next.
+                following = control.next_step(taken, correction, known)
+                step = max(step, following) if following > taken else following
         return path
 
     def _guess(self, states: Sequence[State], load: float) -> State:

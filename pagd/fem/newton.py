@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,7 +90,7 @@ class Newton:
                 return NewtonResult(None, len(corrections), tuple(corrections), str(error))
             size = float(np.abs(correction[: self._displacements]).max())
             corrections.append(size)
-            if not size < settings.largest_correction:
+            if not size < settings.largest_correction or _diverges(corrections, settings):
                 break
             if size < settings.tolerance:
                 final = self.assembly.advance(state, correction)
@@ -125,3 +126,9 @@ class Newton:
                 return trial, residual, values
             fraction /= 2
         return None
+
+
+def _diverges(corrections: Sequence[float], settings: NewtonSettings) -> bool:
+    """Whether the corrections grow again after the second, which may exceed the first."""
+    grows = len(corrections) > 2 and corrections[-1] > corrections[-2]
+    return grows and corrections[-1] > 10 * settings.tolerance
