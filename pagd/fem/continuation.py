@@ -57,7 +57,7 @@ class StepControl:
     def _factor(self, first_correction: float, states: int) -> float:
         if not 0 < first_correction < math.inf:
             return self.cut if first_correction else self.growth
-        return (self.wanted_correction / first_correction) ** (1 / states)
+        return float((self.wanted_correction / first_correction) ** (1 / states))
 
 
 @dataclass(frozen=True, slots=True)
