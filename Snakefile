@@ -35,6 +35,6 @@ rule all:
     default_target: True
     input:
         rules.summary.input,
-        #rules.publish.input,
+        rules.publish.input,
     message:
         "Tables, pictures and page are complete: open results/report/index.html."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import importlib.resources
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +13,16 @@ from pagd.documents import read_document
 from pagd.materials import find_material
 from pagd.validation import check, defaults, schema
 
-__all__ = ["SECTIONS", "checked", "completed", "load", "material_as_json", "part", "part_as_json"]
+__all__ = [
+    "SECTIONS",
+    "checked",
+    "completed",
+    "load",
+    "material_as_json",
+    "material_file",
+    "part",
+    "part_as_json",
+]
 
 #: The sections of the configuration that each stage depends on, and no others.
 SECTIONS = {
@@ -65,6 +75,14 @@ def part(config: Mapping[str, Any], stage: str) -> Config:
 def part_as_json(config: Mapping[str, Any], stage: str) -> str:
     """Return :func:`part` as one line of JSON, to be handed to a stage as it is."""
     return json.dumps(part(config, stage), ensure_ascii=False)
+
+
+def material_file(config: Mapping[str, Any]) -> Path:
+    """Return the file of materials; pagd's own where the default one is not there."""
+    file = Path(config["material_file"])
+    if file.is_file() or file != Path(completed({})["material_file"]):
+        return file
+    return Path(str(importlib.resources.files("pagd") / "data" / "materials.yaml"))
 
 
 def material_as_json(file: str, name: str) -> str:

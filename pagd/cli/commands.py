@@ -12,7 +12,7 @@ from typing import Any
 
 from pagd import config as configuration
 from pagd.catalogue import design_from
-from pagd.cli.output import print_design, print_result, verdict
+from pagd.cli.output import print_design, print_result, progress_to, verdict
 from pagd.errors import InputError
 
 __all__ = [
@@ -82,7 +82,7 @@ def mesh(options: Namespace) -> int:
 
 def solve(options: Namespace) -> int:
     """Run the stage solve, on a mesh of ours or on the user's own."""
-    set_threads(options.threads)
+    _set_threads(options.threads)
     from pagd.stages import solve as stage
 
     config = _config(options)
@@ -93,6 +93,7 @@ def solve(options: Namespace) -> int:
         stage.materials_of(config, options.material, options.paper),
         name=options.name,
         vtu=options.vtu,
+        progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
     )
     return verdict(record, options.keep_going)
 
@@ -119,7 +120,7 @@ def figures(options: Namespace) -> int:
 
 def run_all(options: Namespace) -> int:
     """Run all stages of one design, each in a folder of its own under ``--out``."""
-    set_threads(options.threads)
+    _set_threads(options.threads)
     from pagd.stages import chain
     from pagd.stages.solve import materials_of
 
@@ -130,12 +131,13 @@ def run_all(options: Namespace) -> int:
         config,
         materials_of(config, options.material, options.paper),
         vtu=options.vtu,
+        progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
     )
     print_result(record)
     return verdict(record, options.keep_going)
 
 
-def set_threads(count: int) -> None:
+def _set_threads(count: int) -> None:
     """Limit the threads of every library that counts them; before they are imported."""
     if count < 1:
         raise InputError(f"--threads = {count} must be at least 1.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
+from collections.abc import Callable
 
 from pagd.catalogue import NamedDesign
 from pagd.design import (
@@ -17,7 +18,9 @@ from pagd.design import (
 from pagd.errors import Status
 from pagd.record import Record
 
-__all__ = ["print_design", "print_result", "start_log", "verdict"]
+__all__ = ["print_design", "print_result", "progress_to", "start_log", "verdict"]
+
+log = logging.getLogger(__name__)
 
 
 def start_log(verbose: bool) -> None:
@@ -29,6 +32,18 @@ def start_log(verbose: bool) -> None:
         force=True,
     )
     logging.getLogger("pagd").setLevel(logging.DEBUG if verbose else logging.INFO)
+
+
+def progress_to(maximum_kPa: float) -> Callable[[float, int], None]:
+    """Return what tells how far a solve is: in place for a person, line by line for a file."""
+    if not sys.stderr.isatty():
+        return lambda pressure, count: log.info("%.4g kPa, %d iterations", pressure, count)
+
+    def show(pressure_kPa: float, iterations: int) -> None:
+        end = "\n" if pressure_kPa >= maximum_kPa else ""
+        print(f"\r{pressure_kPa:8.3f} of {maximum_kPa:g} kPa", end=end, file=sys.stderr, flush=True)
+
+    return show
 
 
 def verdict(record: Record, keep_going: bool) -> int:

@@ -15,9 +15,10 @@ from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import Thresholds, Trajectory, is_still, measure, performance
 from pagd.record import Meter, Record, read_record
-from pagd.sections import Stations, even_stations, place_sections, stations_of
+from pagd.sections import Stations, stations_of
 from pagd.stages.geometry import read_design
-from pagd.stages.mesh import MESH_NAME
+from pagd.stages.mesh import mesh_file
+from pagd.stages.sections import even_stations_of, sections_of
 from pagd.stages.solve import HISTORY_NAME, STATES_NAME
 from pagd.stages.stage import Outcome, run_stage
 from pagd.states import read_states
@@ -33,7 +34,10 @@ Columns = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Folders:
-    """Folders of the stages before; ``geometry`` and ``repair`` where there is a design."""
+    """Folders of the stages before; ``geometry`` and ``repair`` where there is a design.
+
+    ``mesh`` may also be a .msh file of one's own, the one that was solved.
+    """
 
     mesh: Path
     solve: Path
@@ -43,7 +47,7 @@ class Folders:
     def records(self) -> list[Record]:
         """Return the records of the stages before, in order."""
         stages = (self.geometry, self.repair, self.mesh, self.solve)
-        return [read_record(folder) for folder in stages if folder is not None]
+        return [read_record(folder) for folder in stages if folder and not folder.is_file()]
 
 
 def run(folders: Folders, out: Path, config: Mapping[str, Any], sections: int = 11) -> Record:
@@ -103,16 +107,17 @@ def _cost(upstream: list[Record]) -> dict[str, float]:
 
 
 def _sizes(upstream: list[Record]) -> dict[str, Any]:
-    meshed, solved = upstream[-2:]
+    solved = upstream[-1]
+    sizes = [r.configuration["mesh"]["size_mm"] for r in upstream if r.stage == "mesh"]
     return {
-        "size_mm": meshed.configuration["mesh"]["size_mm"],
+        "size_mm": sizes[0] if sizes else None,
         "material": solved.configuration["material"]["name"],
         **{key: solved.figures[key] for key in ("tets", "unknowns", "newton_iterations")},
     }
 
 
 def _measured(folders: Folders, out: Path, sections: int, thresholds: Thresholds) -> Columns:
-    mesh = read_msh(folders.mesh / MESH_NAME)
+    mesh = read_msh(mesh_file(folders.mesh))
     solved = read_record(folders.solve)
     trajectory = _trajectory(folders, mesh, sections)
     history = read_table(folders.solve / HISTORY_NAME)
@@ -129,9 +134,7 @@ _STRAINS = ("strain_max", "strain_p99")
 
 
 def _trajectory(folders: Folders, mesh: Mesh, sections: int) -> Trajectory:
-    stations = _stations(folders.geometry, mesh, sections)
-    mirrored = "symmetry" in mesh.surfaces
-    placed = place_sections(mesh.points, mesh.surfaces["paper"], stations, mirrored=mirrored)
+    placed = sections_of(mesh, _stations(folders.geometry, mesh, sections))
     states = read_states(folders.solve / STATES_NAME)
     return measure(placed, states.pressure_kPa, states.displacement)
 
@@ -139,8 +142,7 @@ def _trajectory(folders: Folders, mesh: Mesh, sections: int) -> Trajectory:
 def _stations(geometry: Path | None, mesh: Mesh, count: int) -> Stations:
     if geometry is not None:
         return stations_of(read_design(geometry).design)
-    x = mesh.points[mesh.nodes_of("paper"), 0]
-    return even_stations(float(np.ptp(x)), count, float(x.min()))
+    return even_stations_of(mesh, count)
 
 
 def _refuse_still(outcome: Outcome, last: Mapping[str, Any], thresholds: Thresholds) -> None:

@@ -48,3 +48,13 @@ def config_of(stage):
 def of_all_designs(pattern):
     """The paths of a per-design output, for all designs, in the order of the tables."""
     return expand(pattern, design=DESIGNS)
+
+
+def of_drawn_designs(pattern):
+    """The same for the designs that pictures are drawn of."""
+    return of_all_designs(pattern)[: CONFIG["figures"]["drawn_designs"]]
+
+
+def design_folder(wildcards):
+    """The folder that holds the folders of a design's stages."""
+    return f"results/designs/{wildcards.design}"

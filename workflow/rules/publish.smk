@@ -1,1 +1,97 @@
 # Pictures and the page.
+
+
+rule publish:
+    input:
+        of_drawn_designs("results/designs/{design}/figures"),
+        "results/figures",
+        "results/report/index.html",
+
+
+rule figures:
+    input:
+        geometry=rules.geometry.output.geometry,
+        repair=rules.repair.output.repair,
+        mesh=rules.mesh.output.mesh,
+        solve=rules.solve.output.solve,
+        metrics=rules.metrics.output.metrics,
+    output:
+        figures=report(
+            directory("results/designs/{design}/figures"),
+            patterns=["{picture}.png"],
+            caption="../report/design.rst",
+            category="Designs",
+            subcategory="{design}",
+            labels={"picture": "{picture}"},
+        ),
+    log:
+        "results/logs/figures/{design}.log",
+    benchmark:
+        "results/benchmarks/figures/{design}.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    params:
+        version=STAGE_VERSIONS["figures"],
+        config=config_of("figures"),
+        design=design_folder,
+    message:
+        "Draw design {wildcards.design}: geometry, mesh and deformed shapes."
+    shell:
+        "pagd figures {params.design:q} --config {params.config:q}"
+        " --keep-going --out {output.figures:q} > {log:q} 2>&1"
+
+
+rule pictures_together:
+    input:
+        mesh=of_drawn_designs(rules.mesh.output.mesh),
+        solve=of_drawn_designs(rules.solve.output.solve),
+        metrics=of_drawn_designs(rules.metrics.output.metrics),
+    output:
+        pictures=report(
+            directory("results/figures"),
+            patterns=["{picture}.png"],
+            caption="../report/together.rst",
+            category="All designs",
+            labels={"picture": "{picture}"},
+        ),
+    log:
+        "results/logs/pictures_together.log",
+    benchmark:
+        "results/benchmarks/pictures_together.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    params:
+        version=STAGE_VERSIONS["figures"],
+        config=config_of("figures"),
+        designs=of_drawn_designs("results/designs/{design}"),
+    message:
+        "Draw the designs together: shapes, trajectories and angles."
+    script:
+        "../scripts/pictures_together.py"
+
+
+rule report_page:
+    input:
+        mesh=of_drawn_designs(rules.mesh.output.mesh),
+        solve=of_drawn_designs(rules.solve.output.solve),
+        metrics=of_drawn_designs(rules.metrics.output.metrics),
+        figures=of_drawn_designs(rules.figures.output.figures),
+        pictures=rules.pictures_together.output.pictures,
+    output:
+        page="results/report/index.html",
+    log:
+        "results/logs/report_page.log",
+    benchmark:
+        "results/benchmarks/report_page.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        version=STAGE_VERSIONS["report"],
+        designs=of_drawn_designs("results/designs/{design}"),
+    message:
+        "Write the page: results/report/index.html."
+    script:
+        "../scripts/report_page.py"

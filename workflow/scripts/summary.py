@@ -1,5 +1,6 @@
 """Glue of the rule summary_tables."""
 
+import sys
 from pathlib import Path
 
 from pagd.summary import write_summary, write_trajectories
@@ -12,6 +13,7 @@ def main(metrics: list[Path], performance: Path, trajectories: Path, table: Path
 
 
 if "snakemake" in globals():
+    sys.stderr = Path(snakemake.log[0]).open("w", encoding="utf-8")
     main(
         metrics=[Path(folder) for folder in snakemake.input.metrics],
         performance=Path(snakemake.output.performance),

@@ -1,0 +1,40 @@
+"""All stages of one design, one after the other: what the workflow does, without the workflow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pagd.actuation import Progress
+from pagd.catalogue import NamedDesign
+from pagd.record import Record
+from pagd.stages import figures, geometry, mesh, metrics, repair, solve
+
+__all__ = ["run"]
+
+
+def run(
+    named: NamedDesign,
+    out: Path,
+    config: Mapping[str, Any],
+    materials: solve.Materials,
+    *,
+    vtu: bool = False,
+    progress: Progress | None = None,
+) -> Record:
+    """Run every stage into its own folder under ``out``; returns the record of the metrics."""
+    at = {
+        stage: out / stage
+        for stage in ("geometry", "repair", "mesh", "solve", "metrics", "figures")
+    }
+    geometry.run(named, at["geometry"], config)
+    repair.run(at["geometry"], at["repair"], config)
+    mesh.run(at["geometry"], at["repair"], at["mesh"], config)
+    solve.run(at["mesh"], at["solve"], config, materials, vtu=vtu, progress=progress)
+    folders = metrics.Folders(
+        mesh=at["mesh"], solve=at["solve"], geometry=at["geometry"], repair=at["repair"]
+    )
+    record = metrics.run(folders, at["metrics"], config)
+    figures.run(out, at["figures"], config)
+    return record

@@ -1,0 +1,62 @@
+"""Stage 6: pictures of one design, of as much of it as there is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pagd.errors import InputError
+from pagd.figures.deformed import draw_deformed
+from pagd.figures.geometry import draw_geometry
+from pagd.figures.load import has_states, load_records, stl_paths
+from pagd.figures.mesh import draw_mesh
+from pagd.record import Meter, Record
+from pagd.stages.mesh import MESH_NAME
+from pagd.stages.stage import Outcome, run_stage
+
+__all__ = ["run"]
+
+
+def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
+    """Draw geometry.png, mesh.png and deformed.png; a design that failed has fewer.
+
+    Parameters
+    ----------
+    design
+        Folder with the folders of the design's stages.
+    out
+        Folder of the stage.
+    config
+        Completed configuration; uses ``figures``.
+    """
+    upstream = list(load_records(design).values())
+    if not upstream:
+        raise InputError(f"{design}: holds no folder of a stage with a record.json.")
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        for name, draw in _drawable(design).items():
+            with meter.part(name):
+                draw(design, folder / f"{name}.png")
+        outcome.figures["pictures"] = sorted(path.name for path in folder.glob("*.png"))
+
+    return run_stage(
+        "figures",
+        out,
+        work,
+        design_id=upstream[-1].design_id,
+        configuration={"figures": config["figures"]},
+        upstream=upstream,
+        goes_on=True,
+        libraries=("matplotlib", "pyvista"),
+    )
+
+
+def _drawable(design: Path) -> dict[str, Any]:
+    """Return what can be drawn: name of the picture to function(design folder, file)."""
+    there = {
+        "geometry": (stl_paths(design) is not None, draw_geometry),
+        "mesh": ((design / "mesh" / MESH_NAME).is_file(), draw_mesh),
+        "deformed": (has_states(design), draw_deformed),
+    }
+    return {name: draw for name, (found, draw) in there.items() if found}

@@ -1,0 +1,81 @@
+"""A project of its own for Snakemake: tiny designs, a coarse mesh, a few kPa."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+HEAD = "name,L,W,H,t,t_n,t_h,t_ab,t_b,N,theta,alpha"
+STRAIGHT = "straight,9.5,15,13,4,2,4,2,2.2,2,0,0"
+SLANTED = "slanted,8,16,10,2,3,3,2,2.4,2,20,1"
+#: Walls of 0.2 mm: refused before anything is drawn.
+THIN = "thin,9.5,15,13,0.2,2,4,0.2,2.2,2,0,0"
+
+SETTINGS: dict[str, Any] = {
+    "designs": {"own": "config/designs.csv"},
+    "mesh": {"size_mm": 6.0},
+    "solve": {"maximum_pressure_kPa": 4.0, "recorded_step_kPa": 2.0},
+    # So little pressure moves the tip by a fraction of a degree.
+    "metrics": {"still_deg": 0.01, "joint_deg": 0.001},
+    "figures": {"resolution_dpi": 60},
+}
+
+
+@dataclass(frozen=True)
+class Project:
+    """A folder with a configuration, and Snakemake to run in it."""
+
+    folder: Path
+
+    def write(self, *rows: str, **settings: dict[str, Any]) -> None:
+        """Write the table of designs and the configuration."""
+        config = self.folder / "config"
+        config.mkdir(exist_ok=True)
+        shutil.copy(ROOT / "config" / "materials.yaml", config)
+        (config / "designs.csv").write_text("\n".join([HEAD, *rows, ""]))
+        whole = {key: SETTINGS.get(key, {}) | settings.get(key, {}) for key in SETTINGS | settings}
+        (config / "config.yaml").write_text(yaml.safe_dump(whole))
+
+    def snakemake(self, *arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+        """Run Snakemake; its output is in ``stdout`` and ``stderr``."""
+        command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+        command += ["--profile", str(ROOT / "profiles" / "default"), "--cores", "2", *arguments]
+        return subprocess.run(
+            command, cwd=self.folder, capture_output=True, text=True, check=False, **options
+        )
+
+    def pending(self) -> set[str]:
+        """Return the outputs that a run would make or make again."""
+        answer = self.snakemake("--summary")
+        assert answer.returncode == 0, answer.stderr
+        heading, *lines = answer.stdout.splitlines()
+        plan = heading.split("\t").index("plan")
+        rows = [line.split("\t") for line in lines]
+        return {row[0].removeprefix("results/") for row in rows if row[plan] != "no update"}
+
+    def __truediv__(self, path: str) -> Path:
+        return self.folder / "results" / path
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    """An empty project."""
+    return Project(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """A project that has run: a straight, a slanted and an impossible design."""
+    project = Project(tmp_path_factory.mktemp("finished"))
+    project.write(STRAIGHT, SLANTED, THIN)
+    answer = project.snakemake()
+    assert answer.returncode == 0, answer.stderr
+    return project

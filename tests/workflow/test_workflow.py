@@ -1,0 +1,250 @@
+"""The workflow from the outside: what it would do, what it leaves, what it runs again."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+from pagd.record import read_record
+from pagd.tables import read_rows, units
+
+from .conftest import ROOT, SLANTED, STRAIGHT, THIN, Project
+
+STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
+GATHERED = {
+    "summary/performance.parquet",
+    "summary/trajectories.parquet",
+    "summary/summary.csv",
+    "figures",
+    "report/index.html",
+}
+
+
+def of_design(name: str, stages: tuple[str, ...] = STAGES) -> set[str]:
+    return {f"designs/{name}/{stage}" for stage in stages}
+
+
+def said(answer: subprocess.CompletedProcess[str]) -> str:
+    """Return all output: a dry run speaks on stdout, a run on stderr."""
+    return answer.stdout + answer.stderr
+
+
+@pytest.fixture
+def changed(finished: Project) -> Iterator[Project]:
+    """The finished project; its configuration is put back after the test."""
+    before = {path: path.read_text() for path in (finished.folder / "config").iterdir()}
+    yield finished
+    for path, text in before.items():
+        path.write_text(text)
+
+
+def test_every_design_leaves_every_record(finished: Project) -> None:
+    for name in ("straight", "slanted", "thin"):
+        for stage in STAGES:
+            record = read_record(finished / f"designs/{name}/{stage}")
+            assert (record.design_id, record.stage) == (name, stage)
+            assert record.status == ("invalid_geometry" if name == "thin" else "ok")
+            assert (finished / f"logs/{stage}/{name}.log").is_file()
+            assert (finished / f"benchmarks/{stage}/{name}.tsv").is_file()
+
+
+def test_the_summary_holds_failed_designs_too(finished: Project) -> None:
+    path = finished / "summary/performance.parquet"
+    rows = {row["design_id"]: row for row in read_rows(path)}
+    assert list(rows) == ["straight", "slanted", "thin"]
+    assert rows["thin"]["status"] == "invalid_geometry"
+    assert "t = 0.2" in rows["thin"]["reason"]
+    assert "t_ab = 0.2" in rows["thin"]["reason"]
+    assert rows["thin"]["bending_deg"] is None
+    for name in ("straight", "slanted"):
+        row = rows[name]
+        assert (row["status"], row["reason"], row["origin"]) == ("ok", None, "own")
+        assert row["pressure_kPa"] == 4.0
+        assert row["bending_deg"] > 0.01
+        assert row["tip_z_mm"] < 0
+        assert row["energy_balance"] < 0.01
+        assert row["wall_s"] > 0
+        assert row["blocked_force_N"] is None
+    assert abs(rows["slanted"]["twist_deg"]) > 10 * abs(rows["straight"]["twist_deg"])
+    assert units(path)["work_density_kJ_m3"] == "kJ/m³"
+
+
+def test_trajectories_hold_every_station_at_every_pressure(finished: Project) -> None:
+    rows = read_rows(finished / "summary/trajectories.parquet")
+    found = {(row["design_id"], row["pressure_kPa"], row["station"]) for row in rows}
+    assert found == {
+        (name, pressure, station)
+        for name in ("straight", "slanted")
+        for pressure in (0.0, 2.0, 4.0)
+        for station in range(3)
+    }
+
+
+def test_a_straight_design_is_solved_as_a_half(finished: Project) -> None:
+    volumes = {
+        name: (
+            read_record(finished / f"designs/{name}/geometry").figures["solid_volume_mm3"],
+            read_record(finished / f"designs/{name}/solve").figures["solid_volume_mm3"],
+        )
+        for name in ("straight", "slanted")
+    }
+    for exact, solved in volumes.values():
+        assert solved == pytest.approx(exact, rel=1e-4)
+    assert (finished / "designs/straight/repair/body_half.stl").is_file()
+    assert not (finished / "designs/slanted/repair/body_half.stl").exists()
+
+
+def test_pictures_and_page(finished: Project) -> None:
+    for name in ("straight", "slanted"):
+        for picture in ("geometry", "mesh", "deformed"):
+            content = (finished / f"designs/{name}/figures/{picture}.png").read_bytes()
+            assert content.startswith(b"\x89PNG")
+    assert {path.name for path in (finished / "figures").glob("*.png")} == {
+        "angles.png",
+        "gallery.png",
+        "trajectories.png",
+    }
+    page = (finished / "report/index.html").read_text()
+    assert "straight" in page
+    assert "t = 0.2" in page
+
+
+def test_the_report_has_captions(finished: Project) -> None:
+    answer = finished.snakemake("--report", "report.zip")
+    assert answer.returncode == 0, answer.stderr
+    shutil.unpack_archive(finished.folder / "report.zip", finished.folder / "unpacked")
+    text = "".join(
+        path.read_text(errors="replace")
+        for path in (finished.folder / "unpacked").rglob("*")
+        if path.suffix in (".html", ".js")
+    )
+    for caption in ("One row a design", "cut open, with its dimensions", "under rising pressure"):
+        assert caption in text
+
+
+def test_a_second_run_does_nothing(finished: Project) -> None:
+    assert finished.pending() == set()
+    answer = finished.snakemake()
+    assert answer.returncode == 0
+    assert "Nothing to be done" in said(answer)
+
+
+def test_a_changed_parameter_runs_that_design_only(changed: Project) -> None:
+    changed.write(STRAIGHT, SLANTED.replace(",20,1", ",25,1"), THIN)
+    assert changed.pending() == of_design("slanted") | GATHERED
+
+
+def test_another_order_or_a_new_design_runs_no_other(changed: Project) -> None:
+    changed.write(SLANTED, THIN, STRAIGHT, STRAIGHT.replace("straight", "new"))
+    assert changed.pending() == of_design("new") | GATHERED
+
+
+def test_a_changed_picture_runs_pictures_only(changed: Project) -> None:
+    changed.write(STRAIGHT, SLANTED, THIN, figures={"resolution_dpi": 70})
+    drawn = {f"designs/{name}/figures" for name in ("straight", "slanted", "thin")}
+    assert changed.pending() == drawn | {"figures", "report/index.html"}
+
+
+def test_a_changed_material_runs_from_the_solve_on(changed: Project) -> None:
+    path = changed.folder / "config" / "materials.yaml"
+    path.write_text(path.read_text().replace("C10: 0.11,", "C10: 0.12,"))
+    later = ("solve", "metrics", "figures")
+    expected = {p for name in ("straight", "slanted", "thin") for p in of_design(name, later)}
+    assert changed.pending() == expected | GATHERED
+
+
+def test_a_better_citation_runs_nothing(changed: Project) -> None:
+    path = changed.folder / "config" / "materials.yaml"
+    path.write_text(re.sub("source: .*", "source: somewhere else", path.read_text()))
+    assert changed.pending() == set()
+
+
+def test_a_mesher_out_of_time_is_recorded(project: Project) -> None:
+    project.write(STRAIGHT, THIN, mesh={"time_limit_s": 0.001})
+    answer = project.snakemake()
+    assert answer.returncode == 0, answer.stderr
+    rows = {row["name"]: row for row in read_rows(project / "summary/performance.parquet")}
+    assert rows["straight"]["status"] == "mesh_failed"
+    assert "0.001 s" in rows["straight"]["reason"]
+    assert rows["thin"]["status"] == "invalid_geometry"
+    assert rows["straight"]["mode"] == "bending"
+    assert (project / "report/index.html").is_file()
+
+
+def test_a_crash_is_not_hidden_and_leaves_nothing(project: Project) -> None:
+    project.write(STRAIGHT, THIN)
+    broken = project.folder / "openscad"
+    broken.write_text("#!/bin/sh\necho out of order >&2\nexit 127\n")
+    broken.chmod(0o755)
+    path = f"{project.folder}:{os.environ['PATH']}"
+    answer = project.snakemake(env=os.environ | {"PATH": path})
+    assert answer.returncode != 0
+    assert list((project / "designs/straight").iterdir()) == []
+    assert "out of order" in (project / "logs/geometry/straight.log").read_text()
+    assert read_record(project / "designs/thin/figures").status == "invalid_geometry"
+    assert not (project / "summary").exists() or not any((project / "summary").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("fault", "sentence"),
+    [
+        ({"mesh": {"size_mm": -1}}, "mesh.size_mm = -1 must be greater than 0."),
+        ({"solv": {}}, "solv is not a known key (did you mean solve?)."),
+        ({"material": "jelly"}, "material is 'jelly', but must be one of "),
+        ({"designs": {"own": "config/absent.csv"}}, "table of designs config/absent.csv: cannot"),
+    ],
+)
+def test_a_bad_configuration_is_told_in_one_sentence(
+    project: Project, fault: dict[str, object], sentence: str
+) -> None:
+    project.write(STRAIGHT)
+    path = project.folder / "config" / "config.yaml"
+    path.write_text(yaml.safe_dump(yaml.safe_load(path.read_text()) | fault))
+    answer = project.snakemake("--dry-run")
+    assert answer.returncode != 0
+    assert sentence in said(answer)
+    assert "Traceback" not in said(answer)
+
+
+def test_a_bad_table_is_told_by_row(project: Project) -> None:
+    project.write(STRAIGHT, STRAIGHT)
+    answer = project.snakemake("--dry-run")
+    assert answer.returncode != 0
+    assert "config/designs.csv, row 3: name = 'straight' must be unique" in said(answer)
+
+
+def test_dry_run_of_the_repository(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "config", tmp_path / "config")
+    answer = Project(tmp_path).snakemake("--dry-run")
+    assert answer.returncode == 0, answer.stderr
+    counts = dict(re.findall(r"^(\w+) +(\d+)$", said(answer), re.MULTILINE))
+    assert {stage: counts[stage] for stage in STAGES} == dict.fromkeys(STAGES, "3")
+    assert list(tmp_path.glob("results/*")) == []
+
+
+def test_lint() -> None:
+    command = [sys.executable, str(ROOT / ".ci" / "lint_workflow.py")]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, said(answer)
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "workflow" / "rules").glob("*.smk")), ids=str)
+def test_every_rule_says_what_it_does_and_needs(file: Path) -> None:
+    rules = re.split(r"^rule (\w+):\n", file.read_text(), flags=re.MULTILINE)[1:]
+    for name, body in zip(rules[::2], rules[1::2], strict=True):
+        if "output:" not in body:  # a target
+            continue
+        for directive in ("log:", "benchmark:", "message:", "resources:", "version=STAGE_VERS"):
+            assert directive in body, f"{name} lacks {directive}"
+        assert not re.search(r"\b(run|lambda)\b.*:", body), name
+        commands = re.search(r"shell:\n((?: +\".*\"\n)+)", body)
+        for value in re.findall(r"{[^}]+}", commands[1] if commands else ""):
+            assert value.endswith(":q}") or value == "{threads}", f"{name}: {value} is not quoted"

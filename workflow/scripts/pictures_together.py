@@ -1,0 +1,27 @@
+"""Glue of the rule pictures_together."""
+
+import sys
+from pathlib import Path
+
+from pagd.figures.angles import draw_angles
+from pagd.figures.gallery import draw_gallery
+from pagd.figures.load import has_states, has_trajectory
+from pagd.figures.trajectories import draw_trajectories
+
+
+def main(designs: list[Path], out: Path) -> None:
+    """Draw what there is of the designs whose folders are given; nothing if all have failed."""
+    out.mkdir(parents=True)
+    if any(has_states(folder) for folder in designs):
+        draw_gallery(designs, out / "gallery.png")
+    if any(has_trajectory(folder) for folder in designs):
+        draw_trajectories(designs, out / "trajectories.png")
+        draw_angles(designs, out / "angles.png")
+
+
+if "snakemake" in globals():
+    sys.stderr = Path(snakemake.log[0]).open("w", encoding="utf-8")
+    main(
+        designs=[Path(folder) for folder in snakemake.params.designs],
+        out=Path(snakemake.output.pictures),
+    )
