@@ -33,7 +33,8 @@ __all__ = [
     "strain_limit",
 ]
 
-VIEW = Camera((0.55, -1.0, 0.5))
+# From the side and the fixed end: a helix opens to this eye, an arc stays an arc.
+VIEW = Camera((-0.4, -1.0, 0.4))
 # At most so many pressures are drawn, in so many columns.
 _MOST, _COLUMNS = 6, 3
 
@@ -106,9 +107,9 @@ def deformed_figure(title: str, shapes: Shapes) -> Figure:
         axes.imshow(ghost)
         axes.imshow(shapes.picture(int(state), VIEW, box, scale, top))
         axes.set_title(f"{shapes.pressure_kPa[state]:g} kPa")
-    draw_triad(panels.flat[0], VIEW)
     figure.suptitle(f"{title}: deformed shapes at rising pressure", fontweight="bold")
     add_strain_bar(figure, list(panels.flat), top)
+    draw_triad(figure, VIEW)
     return figure
 
 
@@ -139,12 +140,14 @@ def add_strain_bar(figure: Figure, axes: Sequence[Axes], top: float) -> None:
     bar.outline.set_edgecolor(INK)
 
 
-def draw_triad(axes: Axes, camera: Camera, x: float = 0.06, length: float = 22.0) -> None:
-    """Draw the directions x, y and z near the bottom, at `x` of the width, `length` points long."""
+def draw_triad(figure: Figure, camera: Camera, length: float = 24.0) -> None:
+    """Draw the directions x, y and z, `length` points long, at the figure's lower left corner."""
+    axes = figure.add_axes((0.01, 0.02, 0.08, 0.1))
+    axes.set_axis_off()
     for image, name in zip(length * camera.project(np.eye(3)), "xyz", strict=True):
         axes.annotate(
             name,
-            xy=(x, 0.08),
+            xy=(0.5, 0.2),
             xycoords="axes fraction",
             xytext=tuple(1.3 * image),
             textcoords="offset points",

@@ -50,8 +50,8 @@ def gallery_figure(shapes: Mapping[str, Shapes], captions: Mapping[str, str]) ->
         axes.set_axis_off()
         axes.set_title(f"{name}, {shape.pressure_kPa[-1]:g} kPa", pad=18)
         axes.text(0.0, 1.02, captions[name], transform=axes.transAxes, va="bottom")
-    draw_triad(panels[0], VIEW, x=0.8)
     add_strain_bar(figure, list(panels), top)
+    draw_triad(figure, VIEW)
     return figure
 
 

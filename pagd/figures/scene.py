@@ -140,7 +140,7 @@ def _add(plotter: pv.Plotter, part: Sheet | Wire) -> None:
         split_sharp_edges=part.smooth,
         feature_angle=35.0,
         show_scalar_bar=False,
-        ambient=0.45,
+        ambient=0.5,
         diffuse=0.7,
         specular=0.08,
         **paint,

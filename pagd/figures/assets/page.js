@@ -270,7 +270,7 @@ class Viewer {
     const { clientWidth: width, clientHeight: height } = this.element;
     const back = Math.max(1, 1.3 / ((width - (this.narrow ? 0 : 100)) / height));
     return {
-      eye: { x: 0.75 * back, y: -1.75 * back, z: 0.75 * back },
+      eye: { x: -0.75 * back, y: -1.75 * back, z: 0.75 * back },
       center: { x: 0, y: 0, z: -0.08 },
       projection: { type: "perspective" },
     };
