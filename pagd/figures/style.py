@@ -29,6 +29,7 @@ __all__ = [
     "design_colours",
     "new_figure",
     "save",
+    "set_resolution",
 ]
 
 INK = "#1d2733"
@@ -79,6 +80,11 @@ def new_figure(width: float, height: float) -> Figure:
 
     style.use(_LOOK)
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def set_resolution(dots_per_inch: int) -> None:
+    """Set the resolution of the pictures that are made from now on."""
+    _LOOK["savefig.dpi"] = dots_per_inch
 
 
 def save(figure: Figure, out: Path) -> None:

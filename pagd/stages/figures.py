@@ -11,6 +11,7 @@ from pagd.figures.deformed import draw_deformed
 from pagd.figures.geometry import draw_geometry
 from pagd.figures.load import has_states, load_records, stl_paths
 from pagd.figures.mesh import draw_mesh
+from pagd.figures.style import set_resolution
 from pagd.record import Meter, Record
 from pagd.stages.mesh import MESH_NAME
 from pagd.stages.stage import Outcome, run_stage
@@ -35,6 +36,7 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
         raise InputError(f"{design}: holds no folder of a stage with a record.json.")
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        set_resolution(config["figures"]["resolution_dpi"])
         for name, draw in _drawable(design).items():
             with meter.part(name):
                 draw(design, folder / f"{name}.png")

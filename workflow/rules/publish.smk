@@ -64,7 +64,7 @@ rule pictures_together:
         runtime=20,
     params:
         version=STAGE_VERSIONS["figures"],
-        config=config_of("figures"),
+        resolution_dpi=CONFIG["figures"]["resolution_dpi"],
         designs=of_drawn_designs("results/designs/{design}"),
     message:
         "Draw the designs together: shapes, trajectories and angles."

@@ -6,11 +6,13 @@ from pathlib import Path
 from pagd.figures.angles import draw_angles
 from pagd.figures.gallery import draw_gallery
 from pagd.figures.load import has_states, has_trajectory
+from pagd.figures.style import set_resolution
 from pagd.figures.trajectories import draw_trajectories
 
 
-def main(designs: list[Path], out: Path) -> None:
+def main(designs: list[Path], out: Path, resolution_dpi: int) -> None:
     """Draw what there is of the designs whose folders are given; nothing if all have failed."""
+    set_resolution(resolution_dpi)
     out.mkdir(parents=True)
     if any(has_states(folder) for folder in designs):
         draw_gallery(designs, out / "gallery.png")
@@ -24,4 +26,5 @@ if "snakemake" in globals():
     main(
         designs=[Path(folder) for folder in snakemake.params.designs],
         out=Path(snakemake.output.pictures),
+        resolution_dpi=snakemake.params.resolution_dpi,
     )
