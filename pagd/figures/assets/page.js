@@ -289,7 +289,8 @@ class Viewer {
       showspikes: false,
       backgroundcolor: "rgba(0,0,0,0)",
     });
-    const ratio = sizes.map((size) => (1.7 * size) / largest);
+    // The box's diagonal fills the picture, whatever its shape.
+    const ratio = sizes.map((size) => (2.05 * size) / Math.hypot(...sizes));
     return {
       font: font(),
       paper_bgcolor: "rgba(0,0,0,0)",
