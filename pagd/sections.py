@@ -4,7 +4,7 @@ A section is the strip of the paper plane around a station. It is sampled on a r
 material points, and their displacement comes from the six-node faces of the mesh by the shape
 functions of the elements themselves. The grid is centred on the station and the same for every
 mesh. A plain set of the nodes near the station is neither, and matters: where the actuator curls
-by 3° per mm, a set whose centre is off by 0.5 mm turns the frame by 1.5°.
+by 2° per mm, a set whose centre is off by 0.5 mm turns the frame by 1°.
 """
 
 from __future__ import annotations
