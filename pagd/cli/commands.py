@@ -6,6 +6,7 @@ Stages are imported where they are used: each needs libraries that the others do
 from __future__ import annotations
 
 import os
+import re
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
@@ -21,10 +22,12 @@ __all__ = [
     "geometry",
     "mesh",
     "metrics",
+    "page",
     "repair",
     "run_all",
     "show_design",
     "solve",
+    "summary",
 ]
 
 
@@ -71,7 +74,7 @@ def mesh(options: Namespace) -> int:
 
     config = _config(options)
     if options.body or options.base:
-        own = stage.OwnSurfaces(name=options.name, half=options.half, **_both(options))
+        own = stage.OwnSurfaces(name=_name(options), half=options.half, **_both(options))
         record = stage.run_own(own, options.out, config)
     elif options.geometry and options.repair:
         record = stage.run(options.geometry, options.repair, options.out, config)
@@ -91,7 +94,7 @@ def solve(options: Namespace) -> int:
         options.out,
         config,
         stage.materials_of(config, options.material, options.paper),
-        name=options.name,
+        name=_name(options),
         vtu=options.vtu,
         progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
     )
@@ -116,6 +119,27 @@ def figures(options: Namespace) -> int:
 
     record = stage.run(options.design_folder, options.out, _config(options))
     return verdict(record, options.keep_going)
+
+
+def summary(options: Namespace) -> int:
+    """Write the tables of designs, of those that came as far as the metrics."""
+    from pagd.record import RECORD_NAME
+    from pagd.summary import write_summary, write_trajectories
+
+    folders = [folder / "metrics" for folder in options.design_folders]
+    measured = [folder for folder in folders if (folder / RECORD_NAME).is_file()]
+    write_summary(measured, options.out / "performance.parquet", options.out / "summary.csv")
+    write_trajectories(measured, options.out / "trajectories.parquet")
+    print(f"{len(measured)} of {len(folders)} designs have a record of their metrics.")
+    return 0
+
+
+def page(options: Namespace) -> int:
+    """Write the page of designs."""
+    from pagd.figures.page import write_page
+
+    write_page(options.design_folders, options.out)
+    return 0
 
 
 def run_all(options: Namespace) -> int:
@@ -156,6 +180,13 @@ def _config(options: Namespace) -> dict[str, Any]:
     if given.get("material_file"):
         config["material_file"] = given["material_file"]
     return configuration.checked(config, "command line")
+
+
+def _name(options: Namespace) -> str | None:
+    name: str | None = options.name
+    if name is not None and not re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        raise InputError(f"--name = {name!r} must consist of letters, digits, '_' and '-'.")
+    return name
 
 
 def _both(options: Namespace) -> dict[str, Path]:

@@ -42,6 +42,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_solve(commands)
     _add_metrics(commands)
     _add_figures(commands)
+    _add_gathering(commands)
     return parser
 
 
@@ -90,7 +91,7 @@ def _add_mesh(commands: Any) -> None:
     own.add_argument(
         "--half", action="store_true", help="they are the half y ≥ 0 of a symmetric actuator"
     )
-    own.add_argument("--name", default="own", help="name in the record (default: %(default)s)")
+    own.add_argument("--name", help="name in the record (default: that of the body's file)")
     _add_mesh_options(mesh)
     _add_stage_options(mesh)
 
@@ -162,6 +163,21 @@ def _add_figures(commands: Any) -> None:
         "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
     )
     _add_stage_options(figures)
+
+
+def _add_gathering(commands: Any) -> None:
+    summary = _command(commands, "summary", "summary", "tables of designs: one row a design")
+    page = _command(commands, "page", "page", "page of designs: open it in a browser")
+    for command, out in ((summary, "folder of the tables"), (page, "HTML file to write")):
+        command.add_argument(
+            "design_folders",
+            type=Path,
+            nargs="+",
+            metavar="FOLDER",
+            help="folder with a design's stage folders",
+        )
+        command.add_argument("--out", type=Path, required=True, help=out)
+        _add_verbose(command)
 
 
 def _command(commands: Any, name: str, handler: str, text: str) -> argparse.ArgumentParser:

@@ -1,0 +1,90 @@
+import csv
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pagd.errors import Status
+from pagd.record import Record, versions, write_record
+from pagd.summary import write_summary, write_trajectories
+from pagd.tables import PERFORMANCE, TRAJECTORY, read_rows, write_table
+
+COST = {"cpu_s": 10.0, "wall_s": 6.0, "peak_memory_MB": 300.0}
+MEASURED = COST | {
+    "name": "good", "origin": "table2", "mode": "bending", "measured_mode": "bending",
+    "pressure_kPa": 50.0, "bending_deg": 78.12, "twist_deg": 0.0, "tip_x_mm": 92.7,
+    "tip_y_mm": 0.0, "tip_z_mm": -76.9, "work_density_kJ_m3": 2.1, "strain_p99": 0.2,
+    "energy_balance": 4e-4, "tets": 5825, "unknowns": 34813, "newton_iterations": 34,
+    "material": "elastosil_m4601", "size_mm": 5.0, "chord_deg": 39.3,
+}  # fmt: skip
+
+
+def folder(root: Path, name: str, figures: dict[str, Any], reason: str | None = None) -> Path:
+    path = root / name
+    path.mkdir()
+    record = Record(
+        stage="metrics",
+        design_id=name,
+        status=Status.mesh_failed if reason else Status.ok,
+        reason=reason,
+        figures=figures,
+        configuration={},
+        versions=versions(1),
+        timings_s={"wall": 0.5, "cpu": 0.25},
+        peak_memory_MB=100.0,
+    )
+    write_record(record, path)
+    return path
+
+
+@pytest.fixture
+def folders(tmp_path: Path) -> list[Path]:
+    """A design that was measured, one that could not be meshed, and a mesh without a design."""
+    good = folder(tmp_path, "good", MEASURED)
+    table = {"design_id": ["good"], "pressure_kPa": [50.0], "station": [0]}
+    write_table(good / "trajectory.parquet", TRAJECTORY, table)
+    failed = {"name": "bad", "origin": "own", "mode": "mixed"}
+    own = {key: value for key, value in MEASURED.items() if key not in ("name", "origin", "mode")}
+    return [
+        folder(tmp_path, "bad", COST | failed, "The mesher gave up."),
+        good,
+        folder(tmp_path, "own", own),
+    ]
+
+
+def test_every_design_has_its_row_in_order(folders: list[Path], tmp_path: Path) -> None:
+    write_summary(folders, tmp_path / "p.parquet", tmp_path / "s.csv")
+    bad, good, own = read_rows(tmp_path / "p.parquet")
+    assert list(good) == [column.name for column in PERFORMANCE]
+    assert (bad["status"], bad["reason"]) == ("mesh_failed", "The mesher gave up.")
+    assert (bad["origin"], bad["mode"], bad["bending_deg"]) == ("own", "mixed", None)
+    assert good["bending_deg"] == 78.12
+    assert (own["name"], own["origin"], own["mode"]) == ("own", None, None)
+    assert {row["fidelity"] for row in (bad, good, own)} == {"full"}
+
+
+def test_cost_counts_the_stage_itself(folders: list[Path], tmp_path: Path) -> None:
+    write_summary(folders, tmp_path / "p.parquet", tmp_path / "s.csv")
+    for row in read_rows(tmp_path / "p.parquet"):
+        assert (row["cpu_s"], row["wall_s"], row["peak_memory_MB"]) == (10.25, 6.5, 300.0)
+
+
+def test_the_table_for_people(folders: list[Path], tmp_path: Path) -> None:
+    write_summary(folders, tmp_path / "p.parquet", tmp_path / "s.csv")
+    rows = {row["design"]: row for row in csv.DictReader((tmp_path / "s.csv").open())}
+    assert rows["good"]["bending, °"] == "78.1"
+    assert rows["good"]["mesh size, mm"] == "5"
+    assert rows["good"]["material"] == "elastosil_m4601"
+    assert rows["bad"]["bending, °"] == ""
+    assert rows["bad"]["reason"] == "The mesher gave up."
+
+
+def test_trajectories_of_those_that_have_one(folders: list[Path], tmp_path: Path) -> None:
+    write_trajectories(folders, tmp_path / "t.parquet")
+    assert [row["design_id"] for row in read_rows(tmp_path / "t.parquet")] == ["good"]
+
+
+def test_nothing_gives_empty_tables(tmp_path: Path) -> None:
+    write_summary([], tmp_path / "p.parquet", tmp_path / "s.csv")
+    write_trajectories([], tmp_path / "t.parquet")
+    assert read_rows(tmp_path / "p.parquet") == read_rows(tmp_path / "t.parquet") == []
