@@ -14,8 +14,8 @@ from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
 from pagd.errors import InputError
+from pagd.figures.deformed import VIEW
 from pagd.figures.load import States, has_states, load_states
-from pagd.figures.scene import Camera
 from pagd.figures.style import FAINT, STRAIN_MAP
 from pagd.figures.surface import skin_of
 from pagd.files import write_text
@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 
 __all__ = ["draw_side_by_side"]
 
-_VIEW = Camera((-0.4, -1.0, 0.4))
+
 _LIGHT = np.array([-0.3, -0.6, 0.75])
 _MARGIN, _CAPTION = 6.0, 9.0
 
@@ -52,13 +52,12 @@ def _triangles(states: States, top: float) -> tuple[FloatArray, list[str]]:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     strain = skin.scalars(states.strain[-1])[skin.triangles].mean(axis=1)
-    seen = np.flatnonzero(normals @ _VIEW.eye > 0)
-    order = seen[np.argsort(corners[seen].mean(axis=1) @ _VIEW.eye)]
+    seen = np.flatnonzero(normals @ VIEW.eye > 0)
+    order = seen[np.argsort(corners[seen].mean(axis=1) @ VIEW.eye)]
     brightness = 0.62 + 0.38 * np.clip(normals[order] @ (_LIGHT / np.linalg.norm(_LIGHT)), 0, 1)
     colours = STRAIN_MAP(np.clip(strain[order] / top, 0, 1))[:, :3] * brightness[:, None]
-    images = _VIEW.project(corners[order]) * [1, -1]
-    # Sixteen levels a channel: short names, and steps too small to see on small triangles.
-    return images, ["#" + to_hex(np.round(c * 15) / 15)[1::2] for c in colours]
+    images = VIEW.project(corners[order]) * [1, -1]
+    return images, [to_hex(c) for c in colours]
 
 
 def _svg(panels: Sequence[tuple[FloatArray, list[str]]], captions: Sequence[str]) -> str:

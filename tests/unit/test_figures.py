@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from pagd.errors import InputError, Status
 from pagd.figures import load, viewer
 from pagd.figures.angles import draw_angles
 from pagd.figures.deformed import Shapes, draw_deformed, strain_limit
+from pagd.figures.drawing import draw_side_by_side
 from pagd.figures.gallery import draw_gallery
 from pagd.figures.geometry import draw_geometry
 from pagd.figures.load import Path3D, States
@@ -414,3 +416,24 @@ def test_page_draws_without_errors_in_a_browser(page, tmp_path):
     assert document.count('class="plot-container') == 4 + 2 * 2
     assert document.count('class="gl-container') >= 2
     assert "30 kPa</output>" in document
+
+
+def test_the_drawing_shows_the_faces_towards_the_eye_and_names_the_designs(tmp_path):
+    folders = [solved(tmp_path / name, half) for name, half in (("left", True), ("right", False))]
+    draw_side_by_side(folders, tmp_path / "designs.svg")
+    tree = ElementTree.parse(tmp_path / "designs.svg").getroot()
+    space = "{http://www.w3.org/2000/svg}"
+    assert [t.text for t in tree.iter(f"{space}text")] == ["left, 30 kPa", "right, 30 kPa"]
+    left, right = ([p.get("points") for p in group] for group in tree.iter(f"{space}g"))
+    skin = skin_of(load.load_mesh(folders[1]), corners_only=True)
+    assert 0.2 < len(right) / len(skin.triangles) < 0.7
+    middle = [
+        np.mean([[float(x) for x in pair.split(",")] for points in side for pair in points.split()])
+        for side in (left, right)
+    ]
+    assert middle[0] < middle[1]
+
+
+def test_a_drawing_of_nothing_is_refused(tmp_path):
+    with pytest.raises(InputError, match="None of the designs"):
+        draw_side_by_side([tmp_path], tmp_path / "designs.svg")

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from pagd.figures.angles import draw_angles
+from pagd.figures.drawing import draw_side_by_side
 from pagd.figures.gallery import draw_gallery
 from pagd.figures.load import has_states, has_trajectory
 from pagd.figures.style import set_resolution
@@ -16,6 +17,7 @@ def main(designs: list[Path], out: Path, resolution_dpi: int) -> None:
     out.mkdir(parents=True)
     if any(has_states(folder) for folder in designs):
         draw_gallery(designs, out / "gallery.png")
+        draw_side_by_side(designs, out / "designs.svg")
     if any(has_trajectory(folder) for folder in designs):
         draw_trajectories(designs, out / "trajectories.png")
         draw_angles(designs, out / "angles.png")
