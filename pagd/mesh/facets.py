@@ -7,18 +7,27 @@ trace of the needle-shaped triangles of an STL file.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from pagd.errors import StageFailure, Status
 from pagd.mesh.joining import Complex
+from pagd.mesh.topology import (
+    components,
+    doubled_areas,
+    edge_neighbours,
+    occurrences,
+    triangle_edges,
+)
 from pagd.mesh.types import FloatArray, IntArray
+
+__all__ = ["SMOOTH_DEG", "Facets", "Loop", "coplanar_groups", "facets_of", "is_finely_curved"]
 
 #: Facets that meet at a smaller angle are taken for pieces of one curved surface.
 SMOOTH_DEG = 25.0
+_TINY = float(np.finfo(np.float64).tiny)
 
 Loop = list[int]
 
@@ -30,8 +39,7 @@ class Facets:
     points: (n, 3); edges: (e, 2) end points; loops: per facet its closed loops, the outer one
     first, each a list of edge numbers counted from 1 and negative where walked backwards;
     patches: (f,) values of Patch; shells: (f,) number of the closed or open piece of surface
-    (connected within the patch) that the facet belongs to; smooth: some facets meet so flatly
-    that they must be pieces of a curved surface.
+    (connected within the patch) that the facet belongs to.
     """
 
     points: FloatArray
@@ -39,42 +47,52 @@ class Facets:
     loops: list[list[Loop]]
     patches: IntArray
     shells: IntArray
-    smooth: bool
 
 
 def facets_of(complex_: Complex) -> Facets:
-    """Group the triangles of `complex_` into planar facets and trace their outlines."""
-    pairs = neighbours(complex_)
+    """Group the triangles of ``complex_`` into planar facets and trace their outlines.
+
+    Raises
+    ------
+    StageFailure
+        ``mesh_failed`` if an outline does not close.
+    """
+    pairs = edge_neighbours(complex_.triangles, complex_.patches)
     groups = coplanar_groups(complex_, pairs)
-    normals = _group_normals(complex_, groups)
     chains = _straight_chains(complex_, groups)
     starts = _chain_starts(chains)
     loops = [
         _facet_loops(complex_.points, complex_.triangles[groups == g], starts, chains, normal)
-        for g, normal in enumerate(normals)
+        for g, normal in enumerate(_group_normals(complex_, groups))
     ]
     first = np.unique(groups, return_index=True)[1]
-    _, shells = connected_components(_graph(pairs, len(groups)), directed=False)
-    edges = np.array([(chain[0], chain[-1]) for chain in chains], dtype=np.int64)
     return Facets(
         points=complex_.points,
-        edges=edges,
+        edges=np.array([(chain[0], chain[-1]) for chain in chains], dtype=np.int64),
         loops=loops,
         patches=complex_.patches[first],
-        shells=shells[first].astype(np.int64),
-        smooth=_meet_smoothly(groups, normals, pairs),
+        shells=components(pairs, len(groups))[first],
     )
 
 
-def neighbours(complex_: Complex) -> IntArray:
-    """Return the pairs (k, 2) of triangles that share an edge and belong to one patch."""
-    triangles = complex_.triangles
-    edges = np.vstack((triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]))
-    keys = np.column_stack((np.sort(edges, axis=1), np.tile(complex_.patches, 3)))
-    owner = np.tile(np.arange(len(triangles)), 3)
-    order = np.lexsort(keys.T)
-    same = (keys[order][1:] == keys[order][:-1]).all(axis=1)
-    return np.column_stack((owner[order][:-1][same], owner[order][1:][same]))
+def is_finely_curved(complex_: Complex, size: float) -> bool:
+    """Tell whether some surface is curved and divided more finely than meshing needs.
+
+    That is so where two neighbours meet at a small angle, and a triangle there is narrower than
+    half the mesh size. Needles prove nothing: their planes are known too badly.
+    """
+    corners = complex_.points[complex_.triangles]
+    pairs = edge_neighbours(complex_.triangles, complex_.patches)
+    areas = doubled_areas(complex_.points, complex_.triangles)
+    longest = _longest_edge(corners)
+    heights = np.linalg.norm(areas, axis=1) / longest
+    normals = areas / np.maximum(np.linalg.norm(areas, axis=1, keepdims=True), _TINY)
+    a, b = pairs.T
+    cosines = np.einsum("ij,ij->i", normals[a], normals[b])
+    away = np.abs(np.einsum("kij,kj->ki", corners[b] - corners[a][:, :1], normals[a])).max(axis=1)
+    doubt = 2.0 * complex_.tolerance * (1.0 + longest[b] / np.maximum(heights[a], _TINY))
+    smooth = (away > doubt) & (cosines > np.cos(np.radians(SMOOTH_DEG)))
+    return bool((smooth & (np.minimum(heights[a], heights[b]) < size / 2.0)).any())
 
 
 def coplanar_groups(complex_: Complex, pairs: IntArray) -> IntArray:
@@ -85,26 +103,24 @@ def coplanar_groups(complex_: Complex, pairs: IntArray) -> IntArray:
     their own join the facet they lie in.
     """
     corners = complex_.points[complex_.triangles]
-    areas = _vector_areas(complex_)
+    areas = doubled_areas(complex_.points, complex_.triangles)
     size = np.linalg.norm(areas, axis=1)
+    needle = size <= 2.0 * complex_.tolerance * _longest_edge(corners)
     graph = _adjacency(pairs)
     groups = np.full(len(corners), -1, dtype=np.int64)
-    count = 0
-    for seed in np.argsort(-size, kind="stable"):
+    for seed in np.argsort(-size, kind="stable").tolist():
         if groups[seed] >= 0:
             continue
-        normal = areas[seed] / max(size[seed], np.finfo(float).tiny)
-        distance = np.abs((corners - corners[seed, 0]) @ normal).max(axis=1)
-        needle = size <= complex_.tolerance * _longest_edge(corners)
-        allowed = (distance <= 2.0 * complex_.tolerance) & ((areas @ normal > 0.0) | needle)
-        _flood(int(seed), allowed, graph, groups, count)
-        count += 1
+        normal = areas[seed] / max(size[seed], _TINY)
+        level = corners[seed, 0] @ normal
+
+        def joins(other: int, normal: FloatArray = normal, level: float = level) -> bool:
+            distance = np.abs(corners[other] @ normal - level).max()
+            is_along = needle[other] or areas[other] @ normal > 0.0
+            return bool(is_along and distance <= 2.0 * complex_.tolerance)
+
+        _flood(seed, joins, graph, groups)
     return groups
-
-
-def _vector_areas(complex_: Complex) -> FloatArray:
-    a, b, c = (complex_.points[complex_.triangles[:, i]] for i in range(3))
-    return np.cross(b - a, c - a) / 2.0
 
 
 def _longest_edge(corners: FloatArray) -> FloatArray:
@@ -121,44 +137,30 @@ def _adjacency(pairs: IntArray) -> dict[int, list[int]]:
 
 
 def _flood(
-    seed: int,
-    allowed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
-    graph: dict[int, list[int]],
-    groups: IntArray,
-    number: int,
+    seed: int, joins: Callable[[int], bool], graph: dict[int, list[int]], groups: IntArray
 ) -> None:
-    """Give `number` to all triangles that are connected to `seed` through allowed, free ones."""
+    """Give the next group number to the seed and all free triangles that join it."""
+    number = int(groups.max()) + 1
     stack = [seed]
     groups[seed] = number
     while stack:
         for other in graph[stack.pop()]:
-            if groups[other] < 0 and allowed[other]:
+            if groups[other] < 0 and joins(other):
                 groups[other] = number
                 stack.append(other)
 
 
 def _group_normals(complex_: Complex, groups: IntArray) -> FloatArray:
     sums = np.zeros((int(groups.max()) + 1, 3))
-    np.add.at(sums, groups, _vector_areas(complex_))
-    return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
-
-
-def _graph(pairs: IntArray, size: int) -> coo_array:
-    return coo_array((np.ones(len(pairs)), pairs.T), shape=(size, size))
-
-
-def _meet_smoothly(groups: IntArray, normals: FloatArray, pairs: IntArray) -> bool:
-    a, b = groups[pairs].T
-    cosines = np.einsum("ij,ij->i", normals[a], normals[b])
-    return bool(((a != b) & (cosines > np.cos(np.radians(SMOOTH_DEG)))).any())
+    np.add.at(sums, groups, doubled_areas(complex_.points, complex_.triangles))
+    return np.asarray(sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), _TINY))
 
 
 def _outlines(triangles: IntArray, groups: IntArray) -> IntArray:
     """Return the undirected edges (k, 2) on the outline of some group."""
-    edges = np.vstack((triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]))
-    keys = np.column_stack((np.sort(edges, axis=1), np.tile(groups, 3)))
-    unique, counts = np.unique(keys, axis=0, return_counts=True)
-    return np.unique(unique[counts == 1][:, :2], axis=0)
+    edges = np.sort(triangle_edges(triangles), axis=1)
+    on_outline = occurrences(np.column_stack((edges, np.tile(groups, 3)))) == 1
+    return np.unique(edges[on_outline], axis=0)
 
 
 def _straight_chains(complex_: Complex, groups: IntArray) -> list[list[int]]:

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pagd.errors import StageFailure, Status
-from pagd.mesh.surfaces import Surface, SurfacePair, merge_points
+from pagd.mesh.surfaces import SurfacePair, merge_points
+from pagd.mesh.topology import BoolArray, doubled_areas, open_edges
 from pagd.mesh.types import FloatArray, IntArray
 
-BoolArray = NDArray[np.bool_]
+__all__ = ["Complex", "Patch", "join"]
 
 #: Largest relative difference between the areas with which body and base meet.
 _AREA_TOLERANCE = 1e-3
@@ -57,7 +57,7 @@ def join(pair: SurfacePair) -> Complex:
     flat = _on_plane(points, triangles, plane_z)
     _check_areas(points, triangles, flat, from_base)
     for side in (False, True):
-        outline = np.unique(_outline(triangles[flat & (from_base != side)]))
+        outline = np.unique(open_edges(triangles[flat & (from_base != side)]))
         triangles, flat, from_base = _split_outline(
             points, triangles, flat, from_base, outline, side, tolerance
         )
@@ -90,7 +90,7 @@ def _merged(
     shifted = pair.base.triangles + len(pair.body.points)
     merged = merge_points(points, np.vstack((pair.body.triangles, shifted)), tolerance)
     centres = merged.points[merged.triangles].mean(axis=1)[:, 2]
-    normals_z = _doubled_areas(merged.points, merged.triangles)[:, 2]
+    normals_z = doubled_areas(merged.points, merged.triangles)[:, 2]
     flat = _on_plane(merged.points, merged.triangles, plane_z)
     return merged.points, merged.triangles, np.where(flat, normals_z > 0.0, centres < plane_z)
 
@@ -99,31 +99,16 @@ def _on_plane(points: FloatArray, triangles: IntArray, plane_z: float) -> BoolAr
     return np.asarray((points[triangles][:, :, 2] == plane_z).all(axis=1))
 
 
-def _doubled_areas(points: FloatArray, triangles: IntArray) -> FloatArray:
-    """Return the vector areas (m, 3), doubled."""
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    return np.cross(b - a, c - a)
-
-
 def _check_areas(
     points: FloatArray, triangles: IntArray, flat: BoolArray, from_base: BoolArray
 ) -> None:
-    areas = np.linalg.norm(_doubled_areas(points, triangles), axis=1) / 2.0
+    areas = np.linalg.norm(doubled_areas(points, triangles), axis=1) / 2.0
     body, base = areas[flat & ~from_base].sum(), areas[flat & from_base].sum()
     if min(body, base) == 0.0 or abs(body - base) > _AREA_TOLERANCE * max(body, base):
         raise _failure(
             "Body and base must cover the same area of the paper plane, but the body covers "
             f"{body:.6g} mm² and the base {base:.6g} mm²"
         )
-
-
-def _outline(triangles: IntArray) -> IntArray:
-    """Return the directed edges (k, 2) that have a triangle of the set on one side only."""
-    edges = np.vstack((triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]))
-    _, inverse, counts = np.unique(
-        np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    return np.asarray(edges[counts[inverse] == 1])
 
 
 def _split_outline(
@@ -136,7 +121,7 @@ def _split_outline(
     tolerance: float,
 ) -> tuple[IntArray, BoolArray, BoolArray]:
     """Split the triangles of one side where `vertices` of the other side lie on its outline."""
-    for a, b in _outline(triangles[flat & (from_base == side)]):
+    for a, b in open_edges(triangles[flat & (from_base == side)]):
         inside = _vertices_on_edge(points, vertices, int(a), int(b), tolerance)
         if len(inside) == 0:
             continue
@@ -173,14 +158,11 @@ def _fan(triangle: IntArray, edge: set[int], inside: IntArray, points: FloatArra
 
 
 def _check_outlines(triangles: IntArray, flat: BoolArray, from_base: BoolArray) -> None:
-    body = np.sort(_outline(triangles[flat & ~from_base]), axis=1)
-    base = np.sort(_outline(triangles[flat & from_base]), axis=1)
+    body = np.sort(open_edges(triangles[flat & ~from_base]), axis=1)
+    base = np.sort(open_edges(triangles[flat & from_base]), axis=1)
     if not np.array_equal(np.unique(body, axis=0), np.unique(base, axis=0)):
         raise _failure("Body and base do not have the same outline in the paper plane")
 
 
 def _failure(reason: str) -> StageFailure:
     return StageFailure(Status.mesh_failed, reason + ".")
-
-
-__all__ = ["Complex", "Patch", "Surface", "join"]

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from pagd.errors import InputError
 from pagd.mesh.gmsh_session import gmsh_session
+from pagd.mesh.topology import components
 from pagd.mesh.types import FloatArray, IntArray
 
 #: Points nearer than this share of the bounding box's diagonal are one point. OpenSCAD writes
@@ -86,10 +85,9 @@ def read_stl(path: Path) -> Surface:
 def merge_points(points: FloatArray, triangles: IntArray, tolerance: float) -> Surface:
     """Merge points nearer than `tolerance`, drop triangles that collapse and unused points."""
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    links = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
-    _, label = connected_components(links, directed=False)
+    label = components(pairs, len(points))
     _, representative = np.unique(label, return_index=True)
-    merged = label.astype(np.int64)[triangles]
+    merged = label[triangles]
     a, b, c = merged.T
     kept = merged[(a != b) & (b != c) & (c != a)]
     used, numbers = np.unique(kept, return_inverse=True)

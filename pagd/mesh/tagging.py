@@ -39,8 +39,9 @@ def name_surfaces(
 
     symmetry = on_plane(1, 0.0, -1.0) & half
     outside = _outside(points, faces, ~symmetry)
-    fixed = outside & on_plane(0, float(points[:, 0].min()), -1.0)
-    tip = outside & on_plane(0, float(points[:, 0].max()), 1.0)
+    x = points[faces][:, :, 0]
+    fixed = outside & on_plane(0, float(x.min()), -1.0)
+    tip = outside & on_plane(0, float(x.max()), 1.0)
     paper = interface_faces(tets, points[tets].mean(axis=1)[:, 2] > plane_z)
     _check_flat(points, paper, plane_z, tolerance)
     named = {

@@ -96,7 +96,7 @@ def components(pairs: IntArray, size: int) -> IntArray:
     """Return the number (size,) of the connected component of each of `size` linked items."""
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
     _, labels = connected_components(graph, directed=False)
-    return labels.astype(np.int64)
+    return np.asarray(labels, dtype=np.int64)
 
 
 def doubled_areas(points: FloatArray, triangles: IntArray) -> FloatArray:
