@@ -48,7 +48,8 @@ class StepControl:
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that converged from a guess through ``states`` states."""
-        return taken * min(max(self._factor(first_correction, states), self.cut), self.growth)
+        factor = min(max(self._factor(first_correction, states), self.cut), self.growth)
+        return max(taken * factor, self.smallest)
 
     def retry_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that did not converge."""

@@ -66,6 +66,7 @@ class PardisoSolver:
         34: 1,  # zero-based indices
     }
     _SYMMETRIC_INDEFINITE = -2
+    _PERTURBED_PIVOTS = 13  # their number, an output
     _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
 
     def __init__(self) -> None:
@@ -121,7 +122,20 @@ class PardisoSolver:
             self._phase(self._ANALYSE, values, right)
             self._analysed = True
         self._phase(self._FACTORISE, values, right)
-        return self._phase(self._SOLVE, values, right)
+        result = self._phase(self._SOLVE, values, right)
+        if self._parameters[self._PERTURBED_PIVOTS]:
+            self._check(values, right, result)
+        return result
+
+    def _check(self, values: FloatArray, right: FloatArray, result: FloatArray) -> None:
+        """Pardiso replaces vanishing pivots and goes on: see whether the result is a solution."""
+        from scipy.sparse import csr_array
+
+        size = len(right)
+        upper = csr_array((values, self._columns, self._starts), shape=(size, size))
+        residual = upper @ result + upper.T @ result - upper.diagonal() * result - right
+        if not np.linalg.norm(residual) <= 1e-6 * np.linalg.norm(right):
+            raise SingularMatrixError("the matrix is singular")
 
     def free(self) -> None:
         """Give the memory of the factors back."""

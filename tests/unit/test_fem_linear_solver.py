@@ -1,0 +1,130 @@
+"""Both linear solvers on symmetric indefinite systems, and what they say of singular ones."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.sparse import csr_array, random_array, triu
+
+from pagd.errors import InputError
+from pagd.fem.linear_solver import (
+    LinearSolver,
+    PardisoSolver,
+    SingularMatrixError,
+    SuperLUSolver,
+    linear_solver,
+)
+
+FloatArray = NDArray[np.float64]
+
+NAMES = ["pardiso", "superlu"]
+
+
+@pytest.fixture(params=NAMES)
+def solver(request: pytest.FixtureRequest) -> Iterator[LinearSolver]:
+    if request.param == "pardiso":
+        pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    made = linear_solver(request.param)
+    yield made
+    made.free()
+
+
+def saddle_point(displacements: int = 120, pressures: int = 15, seed: int = 0) -> csr_array:
+    """A matrix as of P2–P1: stiff block, coupling, tiny negative block."""
+    random = np.random.default_rng(seed)
+    factor = random_array((displacements, displacements), density=0.03, rng=random)
+    coupling = random_array((displacements, pressures), density=0.2, rng=random).toarray()
+    matrix = np.zeros((displacements + pressures,) * 2)
+    matrix[:displacements, :displacements] = (factor @ factor.T).toarray() + np.eye(displacements)
+    matrix[:displacements, displacements:] = coupling
+    matrix[displacements:, :displacements] = coupling.T
+    matrix[displacements:, displacements:] = -1e-5 * np.eye(pressures)
+    return csr_array(matrix)
+
+
+def analyse(solver: LinearSolver, matrix: csr_array) -> FloatArray:
+    """Hand over the pattern of the upper triangle; its values."""
+    upper = csr_array(triu(matrix, format="csr"))
+    upper.sort_indices()
+    solver.analyse(upper.indptr.astype(np.int32), upper.indices.astype(np.int32))
+    return np.asarray(upper.data)
+
+
+def test_solution_of_an_indefinite_system(solver: LinearSolver) -> None:
+    matrix = saddle_point()
+    values, right = analyse(solver, matrix), np.linspace(-1, 2, matrix.shape[0])
+    exact = np.linalg.solve(matrix.toarray(), right)
+    np.testing.assert_allclose(solver.solve(values, right), exact, rtol=1e-7, atol=1e-9)
+
+
+def test_new_values_on_the_same_pattern(solver: LinearSolver) -> None:
+    matrix = saddle_point()
+    values, right = analyse(solver, matrix), np.ones(matrix.shape[0])
+    solver.solve(values, right)
+    exact = np.linalg.solve(3.0 * matrix.toarray(), right)
+    np.testing.assert_allclose(solver.solve(3.0 * values, right), exact, rtol=1e-7, atol=1e-9)
+
+
+def test_new_pattern(solver: LinearSolver) -> None:
+    for seed, pressures in ((0, 15), (1, 10)):
+        matrix = saddle_point(pressures=pressures, seed=seed)
+        values, right = analyse(solver, matrix), np.ones(matrix.shape[0])
+        exact = np.linalg.solve(matrix.toarray(), right)
+        np.testing.assert_allclose(solver.solve(values, right), exact, rtol=1e-7, atol=1e-9)
+
+
+def test_inputs_are_left_alone(solver: LinearSolver) -> None:
+    matrix = saddle_point()
+    values, right = analyse(solver, matrix), np.ones(matrix.shape[0])
+    before = values.copy(), right.copy()
+    solver.solve(values, right)
+    np.testing.assert_array_equal(values, before[0])
+    np.testing.assert_array_equal(right, before[1])
+
+
+def test_singular_matrix(solver: LinearSolver) -> None:
+    """A body that is not held: the stiffness of a free chain of springs."""
+    count = 30
+    chain = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    chain[0, 0] = chain[-1, -1] = 1.0
+    values = analyse(solver, csr_array(chain))
+    with pytest.raises(SingularMatrixError):
+        solver.solve(values, np.linspace(0, 1, count))
+
+
+def test_zero_matrix(solver: LinearSolver) -> None:
+    values = analyse(solver, csr_array(np.eye(5)))
+    with pytest.raises(SingularMatrixError):
+        solver.solve(0 * values, np.ones(5))
+
+
+def test_entries_that_are_not_finite(solver: LinearSolver) -> None:
+    matrix = saddle_point()
+    values = analyse(solver, matrix)
+    values[3] = np.nan
+    with pytest.raises(SingularMatrixError):
+        solver.solve(values, np.ones(matrix.shape[0]))
+
+
+def test_solver_by_name() -> None:
+    assert linear_solver("superlu").name == "superlu"
+    assert isinstance(linear_solver("superlu"), SuperLUSolver)
+
+
+def test_auto_takes_pardiso_where_there_is_mkl() -> None:
+    pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    assert isinstance(linear_solver("auto"), PardisoSolver)
+
+
+def test_auto_does_without_mkl(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pypardiso", None)
+    assert linear_solver("auto").name == "superlu"
+
+
+def test_unknown_solver_is_refused() -> None:
+    with pytest.raises(InputError, match=r"linear_solver is 'mumps'.*auto, pardiso, superlu"):
+        linear_solver("mumps")
