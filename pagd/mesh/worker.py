@@ -62,9 +62,9 @@ def main(folder: Path) -> None:
     """Do the task in ``folder`` and leave a mesh or the reason for there being none."""
     task = json.loads((folder / _TASK).read_text(encoding="utf-8"))
     _die_after(task["time_limit_s"])
-    with np.load(folder / _SURFACES) as arrays:
-        body = Surface(arrays["body_points"], arrays["body_triangles"])
-        base = Surface(arrays["base_points"], arrays["base_triangles"])
+    with np.load(folder / _SURFACES) as given:
+        body = Surface(given["body_points"], given["body_triangles"])
+        base = Surface(given["base_points"], given["base_triangles"])
     try:
         mesh = mesher_named(task["mesher"])(SurfacePair(body, base, task["half"]), task["size"])
     except PagdError as error:
