@@ -132,6 +132,7 @@ _WORDS: dict[str, Callable[[str, Any], str]] = {
     "required": _missing,
     "pattern": _pattern,
     "minProperties": lambda key, error: f"{key} must not be empty",
+    "minItems": lambda key, error: f"{key} must not be empty",
 }
 
 

@@ -99,7 +99,13 @@ def _add_mesh(commands: Any) -> None:
 def _add_mesh_options(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("mesh (instead of the configuration's values)")
     _override(group, "mesh", "size_mm", float, "edge length of the tetrahedra")
-    _override(group, "mesh", "mesher", str, "gmsh or ftetwild, tried first")
+    group.add_argument(
+        "--meshers",
+        dest="mesh.meshers",
+        nargs="+",
+        metavar="NAME",
+        help="gmsh, ftetwild or module:class, in the order they are tried",
+    )
     _override(group, "mesh", "time_limit_s", float, "a mesher is ended after this time")
 
 

@@ -2,13 +2,127 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-__all__ = ["MESH_NAME", "mesh_file"]
+from pagd.mesh.msh import write_msh
+from pagd.mesh.run import MeshGate, mesh_with_limits
+from pagd.mesh.surfaces import SurfacePair
+from pagd.record import Meter, Record, read_record
+from pagd.stages.stage import Outcome, run_stage
+
+__all__ = ["MESH_NAME", "OwnSurfaces", "mesh_file", "name_of", "run", "run_own"]
 
 MESH_NAME = "mesh.msh"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnSurfaces:
+    """Watertight surfaces of one's own: STL files of the body and of the base.
+
+    ``half``: they are the half y ≥ 0 of a symmetric actuator. ``name``: for the record; that of
+    the body's file unless given.
+    """
+
+    body: Path
+    base: Path
+    half: bool = False
+    name: str | None = None
 
 
 def mesh_file(mesh: Path) -> Path:
     """Return the mesh of the stage's folder, or the .msh file of one's own that is given."""
     return mesh / MESH_NAME if mesh.is_dir() else mesh
+
+
+def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> Record:
+    """Mesh a design, or half of it where it is symmetric: mesh.msh.
+
+    Parameters
+    ----------
+    geometry, repair
+        Folders of the stages before.
+    out
+        Folder of the stage.
+    config
+        Completed configuration; uses ``mesh``.
+    """
+    drawn, repaired = read_record(geometry), read_record(repair)
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        half = config["mesh"]["half_model"] and (repair / "body_half.stl").is_file()
+        ending = "_half.stl" if half else ".stl"
+        pair = SurfacePair.from_stl(repair / f"body{ending}", repair / f"base{ending}", half)
+        volume = drawn.figures["solid_volume_mm3"] / (2 if half else 1)
+        _mesh(pair, volume, folder, outcome, config["mesh"])
+
+    return run_stage(
+        "mesh",
+        out,
+        work,
+        design_id=drawn.design_id,
+        configuration={"mesh": config["mesh"]},
+        upstream=[drawn, repaired],
+        libraries=_LIBRARIES,
+    )
+
+
+def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
+    """Mesh surfaces of one's own; as :func:`run` otherwise."""
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        pair = SurfacePair.from_stl(own.body, own.base, own.half)
+        _mesh(pair, None, folder, outcome, config["mesh"])
+
+    return run_stage(
+        "mesh",
+        out,
+        work,
+        design_id=own.name or name_of(own.body),
+        configuration={
+            "mesh": config["mesh"],
+            "body": own.body.name,
+            "base": own.base.name,
+            "half": own.half,
+        },
+        libraries=_LIBRARIES,
+    )
+
+
+def name_of(file: Path) -> str:
+    """Return a name for a design from that of a file."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "own"
+
+
+_LIBRARIES = ("gmsh", "numpy", "pytetwild")
+
+
+def _mesh(
+    pair: SurfacePair,
+    volume: float | None,
+    folder: Path,
+    outcome: Outcome,
+    settings: Mapping[str, Any],
+) -> None:
+    outcome.figures["half"] = pair.half
+    result = mesh_with_limits(
+        pair,
+        settings["meshers"],
+        size=settings["size_mm"],
+        time_limit_s=settings["time_limit_s"],
+        exact_volume=volume,
+        gate=MeshGate(
+            smallest_scaled_jacobian=settings["smallest_scaled_jacobian"],
+            largest_volume_error=settings["largest_volume_error"],
+        ),
+    )
+    write_msh(result.mesh, folder / MESH_NAME)
+    outcome.figures |= {
+        **result.quality.as_dict(),
+        "mesher": result.mesher,
+        "attempts": [asdict(attempt) for attempt in result.attempts],
+        "surfaces": {name: len(faces) for name, faces in result.mesh.surfaces.items()},
+    }

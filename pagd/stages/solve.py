@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -20,7 +19,7 @@ from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import measure, work_of_pressure
 from pagd.record import Meter, Record, read_record
-from pagd.stages.mesh import mesh_file
+from pagd.stages.mesh import mesh_file, name_of
 from pagd.stages.sections import even_stations_of, sections_of
 from pagd.stages.stage import Outcome, run_stage
 from pagd.states import States, write_states
@@ -121,7 +120,7 @@ def run(
         "solve",
         out,
         work,
-        design_id=name or (upstream[0].design_id if upstream else _name_of(file)),
+        design_id=name or (upstream[0].design_id if upstream else name_of(file)),
         configuration={
             "solve": config["solve"],
             "material": asdict(materials.elastomer),
@@ -140,10 +139,6 @@ def _entry(named: str, file: Path) -> tuple[str, dict[str, Any]]:
     if "name" not in entry:
         raise InputError("material: name is missing; a result always names its material.")
     return str(entry.pop("name")), entry
-
-
-def _name_of(file: Path) -> str:
-    return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "own"
 
 
 def _bending_stop(mesh: Mesh, limit_deg: float) -> Stop | None:

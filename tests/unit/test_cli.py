@@ -75,7 +75,7 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
         (["mesh", "--body", "b.stl", "--out", "out"], "pagd: --body and --base must be given toge"),
         (["mesh", "--out", "out"], "pagd: mesh needs either --geometry and --repair, or --body"),
         (["mesh", "--size-mm", "-1", "--out", "out"], "pagd: command line: mesh.size_mm = -1.0 mu"),
-        (["solve", "--mesh", "absent.msh", "--out", "out"], "pagd: The mesh file absent.msh does"),
+        (["solve", "--mesh", "absent.msh", "--out", "out"], "pagd: absent.msh: there is no such"),
         (["solve", "--mesh", "a", "--threads", "0", "--out", "out"], "pagd: --threads = 0 must be"),
         (["solve", "--mesh", "a", "--material", "x", "--out", "out"], "pagd: material is 'x', but"),
     ],

@@ -6,8 +6,11 @@ import pytest
 import yaml
 
 from pagd import config
+from pagd.actuation import Actuation
 from pagd.design import GeometryRules
 from pagd.errors import InputError
+from pagd.mesh.interface import MESHERS
+from pagd.mesh.run import MeshGate
 from pagd.metrics import Thresholds
 from pagd.stages import STAGE_VERSIONS
 from pagd.stages.geometry import rules_of
@@ -24,6 +27,11 @@ def test_defaults_are_those_of_the_library() -> None:
     defaults = config.load(None)
     assert rules_of(defaults) == GeometryRules()
     assert defaults["metrics"] == asdict(Thresholds())
+    gate = {key: defaults["mesh"][key] for key in asdict(MeshGate())}
+    assert gate == asdict(MeshGate())
+    assert defaults["mesh"]["meshers"] == list(MESHERS)
+    limits = {"bending_limit_deg": defaults["solve"]["bending_limit_deg"]}
+    assert defaults["solve"] == asdict(Actuation()) | limits
 
 
 def test_what_is_lacking_takes_its_default(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ def test_states_of_different_nodes_are_refused(tmp_path: Path, nodes: list[int])
         {
             "pressure_kPa": [5.0, 5.0, 10.0, 10.0][: len(nodes)],
             "node": nodes,
-            **{key: zeros for key in ("ux", "uy", "uz", "strain")},
+            **dict.fromkeys(("ux", "uy", "uz", "strain"), zeros),
         },
     )
     with pytest.raises(InputError, match="same nodes in order"):

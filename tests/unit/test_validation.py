@@ -8,12 +8,14 @@ from pagd.validation import check, check_each, defaults, faults, schema
     ("document", "sentence"),
     [
         ({"mash": {}}, "mash is not a known key (did you mean mesh?)"),
-        ({"mesh": {"qqqqq": 1}}, "mesh.qqqqq is not a known key (known are mesher, size_mm"),
+        ({"mesh": {"qqqqq": 1}}, "mesh.qqqqq is not a known key (known are meshers, size_mm"),
         ({"mesh": 3}, "mesh = 3 must be a table of keys and values"),
         ({"mesh": {"size_mm": "3"}}, "mesh.size_mm = '3' must be a number"),
         ({"mesh": {"size_mm": True}}, "mesh.size_mm = True must be a number"),
         ({"mesh": {"size_mm": 0}}, "mesh.size_mm = 0 must be greater than 0"),
-        ({"mesh": {"mesher": "netgen"}}, "mesh.mesher = 'netgen' must be one of gmsh, ftetwild"),
+        ({"mesh": {"meshers": ["tet gen"]}}, "mesh.meshers[0] = 'tet gen' must match ^(gmsh|"),
+        ({"mesh": {"meshers": []}}, "mesh.meshers must not be empty"),
+        ({"solve": {"element": "C3D10"}}, "solve.element = 'C3D10' must be one of taylor_hood, e"),
         ({"limits": {"gap_mm": -1}}, "limits.gap_mm = -1 must be at least 0"),
         ({"limits": {"theta_deg": 91}}, "limits.theta_deg = 91 must be at most 60"),
         ({"designs": {}}, "designs must not be empty"),
@@ -49,4 +51,4 @@ def test_check_each_finds_the_one_that_is_broken() -> None:
 def test_defaults_pass_the_schema_they_come_from() -> None:
     config = defaults(schema("config"))
     assert list(faults(config, "config")) == []
-    assert config["mesh"]["mesher"] == "gmsh"
+    assert config["mesh"]["meshers"] == ["gmsh", "ftetwild"]

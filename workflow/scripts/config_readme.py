@@ -7,6 +7,7 @@ A test keeps the page in step with the schema.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -48,17 +49,24 @@ def rows(schema: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str, s
 
 
 def _value(value: Any) -> str:
-    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+    text = json.dumps(value).replace('"', "")
+    return f"`{text}`"
 
 
 def _rule(part: dict[str, Any]) -> str:
     if "enum" in part:
         return ", ".join(_value(value) for value in part["enum"])
     bounds = [f"{sign} {part[word]}" for word, sign in _SIGNS.items() if word in part]
-    kind = {"number": "number", "integer": "whole number", "boolean": "true, false"}
-    return ", ".join([kind.get(part["type"], "text"), *bounds])
+    return ", ".join([_KINDS[part["type"]], *bounds])
 
 
+_KINDS = {
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "true, false",
+    "string": "text",
+    "array": "list",
+}
 _SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 
 
