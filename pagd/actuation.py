@@ -198,7 +198,7 @@ class Body:
             self.size += self.solid.pressures
         else:
             self.solid = ElementPressureSolid(mesh.points, mesh.tets, material)
-        self.pressure = FollowerPressure(mesh.points, mesh.surfaces["cavity"])
+        self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
         terms: list[EnergyTerm] = [self.solid, self.pressure, *_paper_terms(mesh, paper)]
         self.assembly = Assembly(terms, self.size, self._fixed(mesh))
 
@@ -225,6 +225,11 @@ class Body:
     def solid_volume(self) -> float:
         """Volume of elastomer of the whole actuator, in mm³."""
         return self.copies * float(self.solid.weights.sum())
+
+
+def _cavity(mesh: Mesh) -> NDArray[np.int64]:
+    mesh.nodes_of("cavity")  # says which surfaces there are where this is missing
+    return mesh.surfaces["cavity"]
 
 
 def _paper_terms(mesh: Mesh, paper: Sheet) -> list[EnergyTerm]:

@@ -16,6 +16,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from pagd.documents import parse_yaml
 from pagd.errors import InputError
 
 POLYNOMIAL = 0
@@ -242,9 +243,10 @@ def sheet(name: str, entry: Mapping[str, Any]) -> Sheet:
 def read_materials(path: Path) -> dict[str, dict[str, Any]]:
     """Read the material file: name → entry. ``InputError`` where it is not such a table."""
     try:
-        entries = yaml.safe_load(path.read_text(encoding="utf-8"))
+        entries = parse_yaml(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise InputError(f"material file {path}: cannot be read ({error})") from None
+        reason = " ".join(str(error).split())
+        raise InputError(f"material file {path}: cannot be read ({reason})") from None
     if not isinstance(entries, dict) or not all(isinstance(e, dict) for e in entries.values()):
         raise InputError(f"material file {path}: must be a table of materials by name")
     return entries
