@@ -167,6 +167,8 @@ def _set_threads(count: int) -> None:
         raise InputError(f"--threads = {count} must be at least 1.")
     for library in ("MKL", "OMP", "OPENBLAS", "NUMBA"):
         os.environ[f"{library}_NUM_THREADS"] = str(count)
+    # TBB comes first by default, and Numba warns where it finds one that is too old.
+    os.environ.setdefault("NUMBA_THREADING_LAYER_PRIORITY", "omp workqueue tbb")
 
 
 def _config(options: Namespace) -> dict[str, Any]:

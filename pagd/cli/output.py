@@ -37,7 +37,7 @@ def start_log(verbose: bool) -> None:
 def progress_to(maximum_kPa: float) -> Callable[[float, int], None]:
     """Return what tells how far a solve is: in place for a person, line by line for a file."""
     if not sys.stderr.isatty():
-        return lambda pressure, count: log.info("%.4g kPa, %d iterations", pressure, count)
+        return lambda pressure, count: log.info("%.4g kPa: iterations %d", pressure, count)
 
     def show(pressure_kPa: float, iterations: int) -> None:
         end = "\n" if pressure_kPa >= maximum_kPa else ""

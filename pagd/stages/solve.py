@@ -149,7 +149,7 @@ def _bending_stop(mesh: Mesh, limit_deg: float) -> Stop | None:
 
     def stop(pressure_kPa: float, moved: NDArray[np.float64]) -> tuple[Status, str] | None:
         trajectory = measure(sections, np.array([pressure_kPa]), moved[None])
-        bending = abs(float(trajectory.bending_deg[0, -1]))
+        bending = abs(float(trajectory.bending_deg[-1, -1]))
         if bending <= limit_deg:
             return None
         reason = f"At {pressure_kPa:.4g} kPa it bends by {bending:.0f}°, over {limit_deg:g}°."

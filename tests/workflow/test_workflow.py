@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -16,7 +17,7 @@ import yaml
 from pagd.record import read_record
 from pagd.tables import read_rows, units
 
-from .conftest import ROOT, SLANTED, STRAIGHT, THIN, Project
+from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project
 
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
 GATHERED = {
@@ -35,6 +36,12 @@ def of_design(name: str, stages: tuple[str, ...] = STAGES) -> set[str]:
 def said(answer: subprocess.CompletedProcess[str]) -> str:
     """Return all output: a dry run speaks on stdout, a run on stderr."""
     return answer.stdout + answer.stderr
+
+
+def pagd(folder: Path, *arguments: object) -> int:
+    """Run the command line in a folder and return its exit code."""
+    command = [sys.executable, "-m", "pagd", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, check=False).returncode
 
 
 @pytest.fixture
@@ -253,16 +260,11 @@ def test_every_rule_says_what_it_does_and_needs(file: Path) -> None:
 def test_a_mesh_of_ones_own_is_solved_alike(finished: Project, tmp_path: Path) -> None:
     """The chain's mesh, taken as anybody's .msh file, gives the chain's result."""
     mesh = finished / "designs/straight/mesh/mesh.msh"
-    config = finished.folder / "config" / "config.yaml"
-
-    def pagd(*arguments: object) -> None:
-        words = [*map(str, arguments), "--config", str(config)]
-        command = [sys.executable, "-m", "pagd", *words]
-        answer = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert answer.returncode == 0, said(answer)
-
-    pagd("solve", "--mesh", mesh, "--out", "solve", "--vtu", "--name", "mine")
-    pagd("metrics", "--mesh", mesh, "--solve", "solve", "--sections", 3, "--out", "metrics")
+    config = ("--config", finished.folder / "config" / "config.yaml")
+    own_mesh = ("--mesh", mesh, *config)
+    assert pagd(tmp_path, "solve", *own_mesh, "--out", "solve", "--vtu", "--name", "mine") == 0
+    metrics = ("metrics", *own_mesh, "--solve", "solve", "--sections", 3, "--out", "metrics")
+    assert pagd(tmp_path, *metrics) == 0
     own = read_record(tmp_path / "metrics")
     chain = read_record(finished / "designs/straight/metrics")
     assert own.design_id == "mine"
@@ -273,11 +275,38 @@ def test_a_mesh_of_ones_own_is_solved_alike(finished: Project, tmp_path: Path) -
 
 def test_a_pair_of_surfaces_is_meshed_alike(finished: Project, tmp_path: Path) -> None:
     folder = finished / "designs/slanted/repair"
-    command = [sys.executable, "-m", "pagd", "mesh", "--size-mm", "6", "--out", "mesh"]
-    command += ["--body", str(folder / "body.stl"), "--base", str(folder / "base.stl")]
-    answer = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert answer.returncode == 0, said(answer)
+    pair = ("--body", folder / "body.stl", "--base", folder / "base.stl")
+    assert pagd(tmp_path, "mesh", *pair, "--size-mm", 6, "--out", "mesh") == 0
     own, chain = read_record(tmp_path / "mesh"), read_record(finished / "designs/slanted/mesh")
     assert own.design_id == "body"
     assert own.figures["tets"] == chain.figures["tets"]
     assert own.figures["volume_mm3"] == pytest.approx(chain.figures["volume_mm3"])
+
+
+def test_a_run_that_ends_early_is_measured_as_far_as_it_came(
+    finished: Project, tmp_path: Path
+) -> None:
+    design = finished / "designs/straight"
+    half_way = read_rows(design / "metrics/performance.parquet")[1]
+    # Beyond the bending at 2 kPa, short of that at 4 kPa.
+    limit = 1.3 * half_way["bending_deg"]
+    settings = SETTINGS["solve"] | {"bending_limit_deg": limit}
+    config = ("--config", json.dumps({"solve": settings, "metrics": SETTINGS["metrics"]}))
+    before = ("--geometry", design / "geometry", "--mesh", design / "mesh")
+    assert pagd(tmp_path, "solve", *before[2:], *config, "--out", "solve") == 1
+    assert pagd(tmp_path, "metrics", *before, "--solve", "solve", *config, "--out", "metrics") == 1
+    record = read_record(tmp_path / "metrics")
+    assert record.status == "bending_limit"
+    assert "it bends by" in str(record.reason)
+    assert record.figures["pressure_kPa"] == 2.0
+    assert record.figures["bending_deg"] == pytest.approx(half_way["bending_deg"], rel=1e-3)
+
+
+def test_an_actuator_that_hardly_moves_is_recorded(finished: Project, tmp_path: Path) -> None:
+    design = finished / "designs/straight"
+    folders = [word for s in ("geometry", "mesh", "solve") for word in (f"--{s}", design / s)]
+    assert pagd(tmp_path, "metrics", *folders, "--out", "metrics") == 1
+    record = read_record(tmp_path / "metrics")
+    assert record.status == "no_actuation"
+    assert "both less than 5°" in str(record.reason)
+    assert record.figures["tets"] > 0
