@@ -152,7 +152,7 @@ def _bending_stop(mesh: Mesh, limit_deg: float) -> Stop | None:
         bending = abs(float(trajectory.bending_deg[-1, -1]))
         if bending <= limit_deg:
             return None
-        reason = f"At {pressure_kPa:.4g} kPa it bends by {bending:.0f}°, over {limit_deg:g}°."
+        reason = f"At {pressure_kPa:.4g} kPa it bends by {bending:.1f}°, over {limit_deg:g}°."
         return Status.bending_limit, reason
 
     return stop
