@@ -12,7 +12,7 @@ from pagd.mesh.tagging import name_surfaces
 from pagd.mesh.topology import BoolArray, boundary_faces, interface_faces
 from pagd.mesh.types import FloatArray, IntArray, Mesh
 
-__all__ = ["box", "cylinder_quarter", "hollow_block", "sphere_octant"]
+__all__ = ["box", "cylinder_quarter", "grid", "hollow_block", "sphere_octant"]
 
 Range = tuple[int, int]
 
@@ -34,7 +34,7 @@ def box(size: Sequence[float], cells: tuple[int, int, int], paper_layer: int | N
     Mesh
         With the sides ``x0``, ``x1``, ``y0``, … ``z1`` as surfaces.
     """
-    points, tets = _grid(size, np.ones(cells, dtype=np.bool_))
+    points, tets = grid(size, np.ones(cells, dtype=np.bool_))
     faces = boundary_faces(tets)
     surfaces = {
         f"{name}{end}": faces[_all_at(points[:, axis], faces, end * size[axis])]
@@ -69,7 +69,7 @@ def hollow_block(
     """
     solid = np.ones(cells, dtype=np.bool_)
     solid[tuple(slice(*bounds) for bounds in void)] = False
-    points, tets = _grid(size, solid)
+    points, tets = grid(size, solid)
     height = size[2] * paper_layer / cells[2]
     tolerance = 1e-9 * max(size)
     return quadratic_mesh(points, tets, name_surfaces(points, tets, height, half, tolerance))
@@ -129,6 +129,23 @@ def sphere_octant(inner: float, outer: float, cells: tuple[int, int]) -> Mesh:
     return _mapped(flat, inflate, {name: name for name in flat.surfaces})
 
 
+def grid(size: Sequence[float], solid: BoolArray) -> tuple[FloatArray, IntArray]:
+    """Points (n, 3) and tetrahedra (m, 4) of the cells that are ``solid`` in a regular grid.
+
+    Parameters
+    ----------
+    size
+        Edge lengths (3) in mm of the whole grid.
+    solid
+        (nx, ny, nz) which cells to fill; six tetrahedra go into each.
+    """
+    axes = [np.linspace(0.0, size[i], n + 1) for i, n in enumerate(solid.shape)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = np.arange(len(points)).reshape([len(axis) for axis in axes])
+    corner = np.argwhere(solid)
+    return points, np.vstack([_kuhn(corner, numbers, order) for order in permutations(range(3))])
+
+
 def _mapped(
     mesh: Mesh, function: Callable[[FloatArray], FloatArray], names: dict[str, str]
 ) -> Mesh:
@@ -139,15 +156,6 @@ def _mapped(
 
 def _all_at(coordinates: FloatArray, faces: IntArray, value: float) -> BoolArray:
     return np.asarray(np.isclose(coordinates[faces], value, rtol=1e-9, atol=1e-12).all(axis=1))
-
-
-def _grid(size: Sequence[float], solid: BoolArray) -> tuple[FloatArray, IntArray]:
-    """Points and tetrahedra of the cells of a regular grid that are ``solid``."""
-    axes = [np.linspace(0.0, size[i], n + 1) for i, n in enumerate(solid.shape)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    numbers = np.arange(len(points)).reshape([len(axis) for axis in axes])
-    corner = np.argwhere(solid)
-    return points, np.vstack([_kuhn(corner, numbers, order) for order in permutations(range(3))])
 
 
 def _kuhn(corner: IntArray, numbers: IntArray, order: tuple[int, ...]) -> IntArray:
@@ -166,7 +174,7 @@ def _kuhn(corner: IntArray, numbers: IntArray, order: tuple[int, ...]) -> IntArr
 def _prism(inner: float, outer: float, cells: tuple[int, int]) -> Mesh:
     """Mesh the prism u, v >= 0, u + v <= 1, inner <= r <= outer, named as its image."""
     layers, n = cells
-    points, tets = _grid((1.0, 1.0, outer - inner), np.ones((n, n, layers), dtype=np.bool_))
+    points, tets = grid((1.0, 1.0, outer - inner), np.ones((n, n, layers), dtype=np.bool_))
     # The diagonals of the cells run along x = y: keep one side of it, then mirror it.
     x, y, _ = points[tets].mean(axis=1).T
     tets = tets[y < x][:, [0, 2, 1, 3]]

@@ -38,18 +38,28 @@ def all_faces(tets: IntArray) -> tuple[IntArray, IntArray]:
 def shared_faces(tets: IntArray) -> tuple[IntArray, IntArray]:
     """Return each face once, outward from its first owner, and its owners (k, 2).
 
-    The second owner is −1 for a face on the boundary. InputError if a face has three owners.
+    The second owner is −1 for a face on the boundary. InputError if tetrahedra overlap: three
+    share a face, or two that lie on the same side of it.
     """
     faces, owner = all_faces(tets)
     numbers = row_numbers(np.sort(faces, axis=1))
-    if np.bincount(numbers).max() > 2:
-        raise InputError("The mesh has faces shared by three tetrahedra.")
+    counts = np.bincount(numbers)
+    # Seen from its two owners, an inner face turns either way.
+    turns = np.bincount(numbers, weights=_parity(faces))
+    if counts.max() > 2 or (turns[counts == 2] != 0.0).any():
+        raise InputError("The mesh has tetrahedra that overlap at a common face.")
     order = np.argsort(numbers, kind="stable")
     first = np.concatenate(([True], np.diff(numbers[order]) > 0))
     owners = np.full((int(first.sum()), 2), -1, dtype=np.int64)
     owners[:, 0] = owner[order[first]]
     owners[numbers[order[~first]], 1] = owner[order[~first]]
     return faces[order[first]], owners
+
+
+def _parity(triangles: IntArray) -> FloatArray:
+    """Return +1 or −1 (k,): whether an even or odd permutation sorts the corners."""
+    a, b, c = triangles.T
+    return np.asarray(np.sign(b - a) * np.sign(c - b) * np.sign(c - a), dtype=np.float64)
 
 
 def boundary_faces(tets: IntArray) -> IntArray:
