@@ -1,0 +1,83 @@
+"""Closed forms of incompressible bodies, and the heavy elastica by quadrature."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+#: The Yeoh coefficients C10 and C20 in MPa of the two materials that things are verified with.
+NEO_HOOKE, YEOH = (0.11, 0.0), (0.11, 0.02)
+
+Coefficients = tuple[float, float]
+
+
+def _slope(
+    material: Coefficients, stretches: Callable[[float], tuple[float, ...]]
+) -> Callable[[float], float]:
+    """dW/dλ of W = C10 (I₁ − 3) + C20 (I₁ − 3)², the principal stretches being functions of λ."""
+
+    def first_invariant(stretch: float) -> float:
+        return sum(s**2 for s in stretches(stretch))
+
+    def slope(stretch: float) -> float:
+        c10, c20 = material
+        # I₁ is a sum of powers of λ: central differences err by 1e-10 of it.
+        step = 1e-5
+        rate = (first_invariant(stretch + step) - first_invariant(stretch - step)) / (2 * step)
+        return (c10 + 2 * c20 * (first_invariant(stretch) - 3)) * rate
+
+    return slope
+
+
+def sphere_pressure(material: Coefficients, inner: float, outer: float, stretch: float) -> float:
+    """Pressure (MPa) at which the inner radius of a thick sphere has the given stretch λa.
+
+    p = ∫ W′(λ)/(λ³ − 1) dλ from λb to λa, with λb³ − 1 = (A/B)³ (λa³ − 1)
+    (Ogden, *Non-Linear Elastic Deformations*, 1984, section 5.3.2).
+    """
+    slope = _slope(material, lambda s: (s, s, s**-2))
+    outer_stretch = (1 + (inner / outer) ** 3 * (stretch**3 - 1)) ** (1 / 3)
+    return float(quad(lambda s: slope(s) / (s**3 - 1), outer_stretch, stretch)[0])
+
+
+def cylinder_pressure(material: Coefficients, inner: float, outer: float, stretch: float) -> float:
+    """Pressure (MPa) at which the inner radius of a thick cylinder has the stretch λa.
+
+    Plane strain: p = ∫ W′(λ)/(λ² − 1) dλ from λb to λa, with λb² − 1 = (A/B)² (λa² − 1).
+    """
+    slope = _slope(material, lambda s: (s, 1 / s, 1.0))
+    outer_stretch = (1 + (inner / outer) ** 2 * (stretch**2 - 1)) ** (1 / 2)
+    return float(quad(lambda s: slope(s) / (s**2 - 1), outer_stretch, stretch)[0])
+
+
+def bent_block(height: float, length: float, angle: float) -> tuple[float, float, float]:
+    """α = length/angle and the radii r_a, r_b of a block bent into an arc (Rivlin 1949)."""
+    alpha = length / angle
+    middle = np.hypot(alpha * height, alpha**2)
+    return alpha, float(np.sqrt(middle - alpha * height)), float(np.sqrt(middle + alpha * height))
+
+
+def bending_moment(modulus: float, height: float, length: float, angle: float) -> float:
+    """Moment per width (N) of a neo-Hookean block bent in plane strain, its faces free."""
+    alpha, a, b = bent_block(height, length, angle)
+    return modulus / 2 * ((b**4 - a**4) / (4 * alpha**2) - alpha**2 * np.log(b / a))
+
+
+def elastica_tip(load: float) -> tuple[float, float, float]:
+    """Tip (x/L, z/L) and slope (rad) of a clamped elastica under a dead force across its axis.
+
+    ``load`` is P L²/EI. EI θ″ = −P cos θ, θ(0) = 0, θ′(L) = 0, by shooting with θ′(0).
+    """
+
+    def end(curvature: float) -> np.ndarray:
+        def rate(_: float, y: np.ndarray) -> list[float]:
+            return [y[1], -load * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])]
+
+        return solve_ivp(rate, (0, 1), [0, curvature, 0, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+
+    curvature = brentq(lambda c: end(c)[1], 0.0, load, xtol=1e-12)
+    slope, _, x, z = end(curvature)
+    return float(x), float(z), float(slope)

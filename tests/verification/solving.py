@@ -1,0 +1,133 @@
+"""Bodies with held and prescribed displacements, solved step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.fem.assembly import Assembly, State
+from pagd.fem.continuation import Continuation, Step, StepControl
+from pagd.fem.linear_solver import linear_solver
+from pagd.fem.newton import Newton, NewtonSettings
+from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
+from pagd.fem.term import EnergyTerm
+from pagd.materials import Elastomer
+from pagd.mesh.types import Mesh
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+Solid = TaylorHoodSolid | ElementPressureSolid
+
+#: Displacements (n, 3) of all nodes at a load; those that are held are used.
+Prescribed = Callable[[float], FloatArray]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A body at a load: displacement (n, 3), all unknowns, and the forces (n, 3) that hold it."""
+
+    load: float
+    displacement: FloatArray
+    unknowns: FloatArray
+    reactions: FloatArray
+    energies: dict[str, float]
+
+
+def elastomer(
+    coefficients: tuple[float, float], poisson_ratio: float = 0.499, bulk: float | None = None
+) -> Elastomer:
+    """Yeoh with C10 and C20 (MPa); the bulk modulus (MPa) sets Poisson's ratio where given."""
+    c10, c20 = coefficients
+    if bulk is not None:
+        shear = 2 * c10
+        poisson_ratio = (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear)
+    given = {"C10": c10, "C20": c20}
+    return Elastomer(name="elastomer", law="yeoh", coefficients=given, poisson_ratio=poisson_ratio)
+
+
+def solid_of(mesh: Mesh, material: Elastomer, element: str = "taylor_hood") -> Solid:
+    """The solid of a mesh; its pressure unknowns follow the displacements."""
+    if element == "taylor_hood":
+        return TaylorHoodSolid(mesh.points, mesh.tets, material, 3 * len(mesh.points))
+    return ElementPressureSolid(mesh.points, mesh.tets, material)
+
+
+def held(mesh: Mesh, **surfaces: str) -> BoolArray:
+    """Which displacements (n, 3) are held: surface name = components, as in x0="x"."""
+    result = np.zeros(mesh.points.shape, np.bool_)
+    for name, components in surfaces.items():
+        for component in components:
+            result[mesh.nodes_of(name), "xyz".index(component)] = True
+    return result
+
+
+def solve(
+    points: FloatArray,
+    terms: Sequence[EnergyTerm],
+    fixed: BoolArray,
+    loads: Sequence[float],
+    prescribed: Prescribed | None = None,
+    *,
+    first: float | None = None,
+    wanted_correction: float = 1.0,
+    tolerance: float = 1e-5,
+) -> list[Solved]:
+    """Equilibria at the given loads.
+
+    Parameters
+    ----------
+    points
+        Reference coordinates (n, 3) in mm.
+    terms
+        The potential.
+    fixed
+        Which displacements (n, 3) are held: at zero, or as ``prescribed``.
+    loads
+        Rising values of the load factor.
+    prescribed
+        Values of held displacements at a load.
+    first
+        First step of the load; a quarter of the first load unless given.
+    wanted_correction, tolerance
+        Of the step control and of Newton's method, in mm.
+    """
+    displacements = points.size
+    size = displacements + sum(getattr(term, "pressures", 0) for term in terms)
+    flat = np.zeros(size, np.bool_)
+    flat[:displacements] = fixed.ravel()
+    assembly = Assembly(terms, size, flat)
+    solver = linear_solver()
+    settings = NewtonSettings(tolerance=tolerance, iterations=15, largest_correction=1e3)
+    newton = Newton(assembly, solver, displacements, settings)
+    control = StepControl(
+        first=first or loads[0] / 4, smallest=1e-6 * loads[-1], wanted_correction=wanted_correction
+    )
+
+    def boundary(load: float, unknowns: FloatArray) -> None:
+        if prescribed:
+            unknowns[:displacements][fixed.ravel()] = prescribed(load)[fixed]
+
+    states: list[State] = []
+
+    def observe(step: Step) -> None:
+        if step.wanted:
+            states.append(step.state)
+
+    path = Continuation(newton, control, boundary).follow(loads, observe)
+    solver.free()
+    assert not path.failure, path.failure
+    return [_solved(assembly, state, displacements) for state in states]
+
+
+def _solved(assembly: Assembly, state: State, displacements: int) -> Solved:
+    residual = assembly.linearize(state)[1][:displacements].reshape(-1, 3)
+    return Solved(
+        state.load,
+        state.unknowns[:displacements].reshape(-1, 3),
+        state.unknowns,
+        residual,
+        assembly.energies(state),
+    )
