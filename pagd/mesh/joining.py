@@ -14,7 +14,7 @@ from enum import IntEnum
 import numpy as np
 
 from pagd.errors import StageFailure, Status
-from pagd.mesh.surfaces import SurfacePair, merge_points
+from pagd.mesh.surfaces import Surface, SurfacePair, merge_points
 from pagd.mesh.topology import BoolArray, doubled_areas, open_edges
 from pagd.mesh.types import FloatArray, IntArray
 
@@ -52,6 +52,8 @@ class Complex:
 def join(pair: SurfacePair) -> Complex:
     """Return the conforming complex of `pair`; StageFailure(mesh_failed) if they do not meet."""
     tolerance = pair.tolerance()
+    for part, surface in (("body", pair.body), ("base", pair.base)):
+        _check_closed(part, surface)
     plane_z = _paper_height(pair, tolerance)
     points, triangles, from_base = _merged(pair, plane_z, tolerance)
     flat = _on_plane(points, triangles, plane_z)
@@ -67,6 +69,14 @@ def join(pair: SurfacePair) -> Complex:
     return Complex(
         points, triangles[keep], patches[keep].astype(np.int64), plane_z, tolerance, pair.half
     )
+
+
+def _check_closed(part: str, surface: Surface) -> None:
+    gaps = len(open_edges(surface.triangles))
+    if gaps:
+        raise _failure(f"The surface of the {part} is not closed: {gaps} edges have one triangle")
+    if surface.volume() <= 0.0:
+        raise _failure(f"The surface of the {part} is inside out: it encloses a negative volume")
 
 
 def _paper_height(pair: SurfacePair, tolerance: float) -> float:

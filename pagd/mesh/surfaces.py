@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,7 +10,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from pagd.errors import InputError
-from pagd.mesh.gmsh_session import gmsh_session
 from pagd.mesh.topology import components
 from pagd.mesh.types import FloatArray, IntArray
 
@@ -17,7 +17,8 @@ from pagd.mesh.types import FloatArray, IntArray
 #: six significant digits, which is 5e-6 of the largest coordinate.
 RELATIVE_TOLERANCE = 1e-5
 
-_GMSH_TRIANGLE = 2
+_STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour", "<u2")])
+_STL_VERTEX = re.compile(rb"vertex((?:\s+[-+.\deEnaif]+){3})", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -35,7 +36,7 @@ class Surface:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SurfacePair:
-    """Watertight surfaces that share the paper plane.
+    """Watertight surfaces that meet in the paper plane, which is horizontal.
 
     body: all of the solid above the paper plane, the cavity as a void inside it.
     base: the slab below the paper plane.
@@ -66,20 +67,36 @@ def read_stl(path: Path) -> Surface:
     """Read an STL file (text or binary); vertices are merged; InputError if it holds nothing."""
     if not path.is_file():
         raise InputError(f"The surface file {path} does not exist.")
-    try:
-        with gmsh_session() as gmsh:
-            gmsh.merge(str(path))
-            tags, coordinates, _ = gmsh.model.mesh.getNodes()
-            _, corners = gmsh.model.mesh.getElementsByType(_GMSH_TRIANGLE)
-    except Exception as error:
-        raise InputError(f"The surface file {path} is not a readable STL file: {error}.") from error
+    content = path.read_bytes()
+    corners = _binary_corners(content)
+    if corners is None:
+        corners = _text_corners(content)
     if len(corners) == 0:
-        raise InputError(f"The surface file {path} holds no triangles.")
-    order = np.argsort(tags)
-    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)[order]
-    triangles = np.searchsorted(tags[order], corners).astype(np.int64).reshape(-1, 3)
-    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
-    return merge_points(points, triangles, RELATIVE_TOLERANCE * extent)
+        raise InputError(f"The surface file {path} holds no triangles; expected an STL file.")
+    if not np.isfinite(corners).all():
+        raise InputError(f"The surface file {path} holds coordinates that are not finite.")
+    extent = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    triangles = np.arange(len(corners), dtype=np.int64).reshape(-1, 3)
+    return merge_points(corners, triangles, RELATIVE_TOLERANCE * extent)
+
+
+def _binary_corners(content: bytes) -> FloatArray | None:
+    """Corners (3m, 3) of a binary STL file; None if its length is not that of one.
+
+    The first word cannot tell: some programs begin binary files with "solid" too.
+    """
+    count = int.from_bytes(content[80:84], "little")
+    if len(content) != 84 + count * _STL_RECORD.itemsize:
+        return None
+    records = np.frombuffer(content, _STL_RECORD, count, offset=84)
+    return records["corners"].astype(np.float64).reshape(-1, 3)
+
+
+def _text_corners(content: bytes) -> FloatArray:
+    """Corners (3m, 3) of a text STL file; empty if it is none."""
+    found = [match.split() for match in _STL_VERTEX.findall(content)]
+    whole = len(found) - len(found) % 3
+    return np.array(found[:whole], dtype=np.float64).reshape(-1, 3)
 
 
 def merge_points(points: FloatArray, triangles: IntArray, tolerance: float) -> Surface:

@@ -53,10 +53,22 @@ def name_surfaces(
     }
     if half:
         named["symmetry"] = faces[symmetry]
-    for name, triangles in named.items():
-        if len(triangles) == 0:
-            raise StageFailure(Status.mesh_failed, f"The mesh has no face on surface '{name}'.")
+    _check_all_there(named)
     return named
+
+
+def _check_all_there(named: dict[str, IntArray]) -> None:
+    if len(named["cavity"]) == 0:
+        raise StageFailure(
+            Status.mesh_failed,
+            "The solid has no cavity: there is no surface apart from the outside, "
+            "so either it is not hollow or the air can get out.",
+        )
+    missing = [name for name, triangles in named.items() if len(triangles) == 0]
+    if missing:
+        raise StageFailure(
+            Status.mesh_failed, f"The mesh has no face on surface {' or '.join(missing)}."
+        )
 
 
 def _outside(points: FloatArray, faces: IntArray, wanted: BoolArray) -> BoolArray:
