@@ -1,7 +1,7 @@
 """Tetrahedra by fTetWild: slower than gmsh, but it meshes any triangles whatever.
 
 fTetWild (Hu et al. 2020) moves the surface within an envelope of ``epsilon``. Thin walls and
-narrow gaps survive if that is small against them.
+narrow gaps survive if that is small against them. No two runs give the same mesh (its issue 72).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pagd.errors import StageFailure, Status
+from pagd.mesh.draws import first_good_mesh
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.quadratic import quadratic_mesh
 from pagd.mesh.surfaces import SurfacePair
@@ -34,21 +35,31 @@ class FTetWildMesher:
         tenth of the narrowest gap (0.5 mm) is enough; 0.02 takes 3 to 5 times as long.
     stop_energy
         Quality (conformal AMIPS energy, 3 for a regular tetrahedron) at which it stops.
+    wanted_scaled_jacobian, size_factors
+        As for gmsh: another draw where putting nodes on the planes has flattened an element.
     """
 
     epsilon: float = 0.05
     stop_energy: float = 10.0
+    wanted_scaled_jacobian: float = 0.01
+    size_factors: tuple[float, ...] = (1.0, 0.95, 0.9)
 
     name = "ftetwild"
 
     def __call__(self, surfaces: SurfacePair, size: float) -> Mesh:
         """Mesh the solid with elements of about ``size`` (mm); StageFailure if it cannot."""
         complex_ = join(surfaces)
+        return first_good_mesh(
+            lambda drawn: self._mesh(complex_, drawn),
+            (factor * size for factor in self.size_factors),
+            self.wanted_scaled_jacobian,
+        )
+
+    def _mesh(self, complex_: Complex, size: float) -> Mesh:
         points, tets = self._tetrahedra(complex_, size)
-        points, tets = _solid_part(points, tets, complex_)
+        tets = _solid_part(points, tets, complex_)
         points = _snapped(points, tets, complex_, 2.0 * self.epsilon)
-        tolerance = complex_.tolerance
-        named = name_surfaces(points, tets, complex_.plane_z, complex_.half, tolerance)
+        named = name_surfaces(points, tets, complex_.plane_z, complex_.half, complex_.tolerance)
         return quadratic_mesh(points, tets, named)
 
     def _tetrahedra(self, complex_: Complex, size: float) -> tuple[FloatArray, IntArray]:
@@ -73,9 +84,7 @@ class FTetWildMesher:
         return np.asarray(points, dtype=np.float64), np.asarray(tets, dtype=np.int64)
 
 
-def _solid_part(
-    points: FloatArray, tets: IntArray, complex_: Complex
-) -> tuple[FloatArray, IntArray]:
+def _solid_part(points: FloatArray, tets: IntArray, complex_: Complex) -> IntArray:
     """Keep the tetrahedra in the solid, turned to positive volume; drop cavity and outside."""
     hull = complex_.triangles[complex_.patches != Patch.paper]
     kept = tets[inside(points[tets].mean(axis=1), complex_.points, hull)]
@@ -83,7 +92,7 @@ def _solid_part(
         raise StageFailure(Status.mesh_failed, "fTetWild left no tetrahedra inside the solid.")
     turned = corner_volumes(points, kept) < 0.0
     kept[turned] = kept[turned][:, [0, 2, 1, 3]]
-    return points, kept
+    return kept
 
 
 def _snapped(points: FloatArray, tets: IntArray, complex_: Complex, distance: float) -> FloatArray:

@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from pagd.errors import PagdError, StageFailure, Status
+from pagd.errors import StageFailure, Status
+from pagd.mesh.draws import first_good_mesh
 from pagd.mesh.facets import SMOOTH_DEG, Facets, facets_of, is_finely_curved
 from pagd.mesh.gmsh_session import gmsh_session
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.quadratic import quadratic_mesh
-from pagd.mesh.quality import scaled_jacobians
 from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.tagging import name_surfaces
 from pagd.mesh.types import FloatArray, IntArray, Mesh
@@ -43,8 +43,8 @@ class GmshMesher:
         Where an element is worse, or the mesh is broken, meshing is repeated with the next of
         the size factors; the best mesh is kept.
     size_factors
-        Whether a sliver stays is chance, and a slightly different size another draw. That costs
-        less than an optimiser: Netgen's adds 20 % of elements, and dies on a flat one.
+        Another draw costs less than an optimiser: Netgen's adds 20 % of elements, and dies on
+        a flat one.
     """
 
     algorithm_3d: int = _HXT
@@ -57,21 +57,11 @@ class GmshMesher:
         """Mesh the solid with elements of about ``size`` (mm); StageFailure if gmsh cannot."""
         complex_ = join(surfaces)
         facets = None if is_finely_curved(complex_, size) else facets_of(complex_)
-        meshes: list[tuple[float, Mesh]] = []
-        reason = "no size was tried"
-        for factor in self.size_factors:
-            try:
-                mesh = self._mesh(complex_, facets, factor * size)
-            except PagdError as error:
-                reason = str(error)
-                continue
-            smallest = float(scaled_jacobians(mesh.points, mesh.tets).min())
-            meshes.append((smallest, mesh))
-            if smallest >= self.wanted_scaled_jacobian:
-                break
-        if not meshes:
-            raise StageFailure(Status.mesh_failed, reason)
-        return max(meshes, key=lambda pair: pair[0])[1]
+        return first_good_mesh(
+            lambda drawn: self._mesh(complex_, facets, drawn),
+            (factor * size for factor in self.size_factors),
+            self.wanted_scaled_jacobian,
+        )
 
     def _mesh(self, complex_: Complex, facets: Facets | None, size: float) -> Mesh:
         try:
