@@ -103,7 +103,7 @@ def _add_polyhedral(gmsh: Any, facets: Facets) -> None:
 
 
 def _add_plane(geo: Any, loops: list[list[int]], lines: list[int]) -> int:
-    curves = [[math.copysign(1, e) * lines[abs(e) - 1] for e in loop] for loop in loops]
+    curves = [[lines[e - 1] if e > 0 else -lines[-e - 1] for e in loop] for loop in loops]
     return int(geo.addPlaneSurface([geo.addCurveLoop(curve) for curve in curves]))
 
 
