@@ -5,7 +5,6 @@ Stages are imported where they are used: each needs libraries that the others do
 
 from __future__ import annotations
 
-import os
 import re
 from argparse import Namespace
 from pathlib import Path
@@ -85,7 +84,7 @@ def mesh(options: Namespace) -> int:
 
 def solve(options: Namespace) -> int:
     """Run the stage solve, on a mesh of ours or on the user's own."""
-    _set_threads(options.threads)
+    _use_threads(options.threads)
     from pagd.stages import solve as stage
 
     config = _config(options)
@@ -144,7 +143,7 @@ def page(options: Namespace) -> int:
 
 def run_all(options: Namespace) -> int:
     """Run all stages of one design, each in a folder of its own under ``--out``."""
-    _set_threads(options.threads)
+    _use_threads(options.threads)
     from pagd.stages import chain
     from pagd.stages.solve import materials_of
 
@@ -161,14 +160,12 @@ def run_all(options: Namespace) -> int:
     return verdict(record, options.keep_going)
 
 
-def _set_threads(count: int) -> None:
-    """Limit the threads of every library that counts them; before they are imported."""
+def _use_threads(count: int) -> None:
     if count < 1:
         raise InputError(f"--threads = {count} must be at least 1.")
-    for library in ("MKL", "OMP", "OPENBLAS", "NUMBA"):
-        os.environ[f"{library}_NUM_THREADS"] = str(count)
-    # TBB comes first by default, and Numba warns where it finds one that is too old.
-    os.environ.setdefault("NUMBA_THREADING_LAYER_PRIORITY", "omp workqueue tbb")
+    from pagd.actuation import use_threads
+
+    use_threads(count)
 
 
 def _config(options: Namespace) -> dict[str, Any]:
