@@ -98,7 +98,8 @@ class ActuationResult:
     status, reason
         ``ok``, or why the last pressure was not reached.
     states
-        The unloaded state first, then the recorded pressures that were reached.
+        The unloaded state first, then the recorded pressures that were reached, and last the
+        state at which the analysis ended early, whatever its pressure.
     history
         One row a converged step, the unloaded state first: ``pressure_kPa``,
         ``cavity_volume_mm3`` and ``stored_energy_mJ`` of the whole actuator,
@@ -132,28 +133,33 @@ class _Recorder:
     progress: Progress | None
     states: list[RecordedState] = field(default_factory=list)
     rows: list[tuple[float, float, float, int]] = field(default_factory=list)
+    last: FloatArray | None = None
     ending: tuple[Status, str] | None = None
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
-        pressure, unknowns = step.state.load / _KPA, step.state.unknowns
-        body = self.body
-        volume, energy = body.volume_and_energy(unknowns, step.state.load)
+        pressure, self.last = step.state.load / _KPA, step.state.unknowns
+        volume, energy = self.body.volume_and_energy(self.last, step.state.load)
         self.rows.append((pressure, volume, energy, step.iterations))
-        displacement = body.displacement(unknowns)
         if step.wanted:
-            found = strains(body.solid, unknowns, len(displacement))
-            self.states.append(
-                RecordedState(
-                    pressure, displacement, found.nodes, found.largest, found.percentile_99
-                )
-            )
+            self.record_last()
         if self.progress:
             self.progress(pressure, step.iterations)
-        self.ending = self._overstretched(unknowns)
+        self.ending = self._overstretched(self.last)
         if self.ending is None and self.stop:
-            self.ending = self.stop(pressure, displacement)
+            self.ending = self.stop(pressure, self.body.displacement(self.last))
         return self.ending[1] if self.ending else None
+
+    def record_last(self) -> None:
+        """Record the last converged state, unless it is recorded already."""
+        pressure, unknowns = self.rows[-1][0], self.last
+        if unknowns is None or (self.states and self.states[-1].pressure_kPa == pressure):
+            return
+        found = strains(self.body.solid, unknowns, self.body.nodes)
+        displacement = self.body.displacement(unknowns)
+        self.states.append(
+            RecordedState(pressure, displacement, found.nodes, found.largest, found.percentile_99)
+        )
 
     def _overstretched(self, unknowns: FloatArray) -> tuple[Status, str] | None:
         limit = self.body.material.largest_stretch
@@ -289,6 +295,8 @@ def free_actuation(
     )
     newton = Newton(body.assembly, solver, 3 * body.nodes, settings)
     path = Continuation(newton, control).follow(list(wanted.recorded_kPa() * _KPA), recorder)
+    # Where the path ends early, how far it came is a result too.
+    recorder.record_last()
     solver.free()
     status, reason = _ending(path, recorder)
     names = ("pressure_kPa", "cavity_volume_mm3", "stored_energy_mJ", "newton_iterations")

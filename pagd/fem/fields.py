@@ -44,7 +44,7 @@ def weighted_percentile(values: FloatArray, weights: FloatArray, share: float) -
 
 def share_beyond(solid: Solid, unknowns: FloatArray, stretch: float) -> float:
     """Share of the volume whose largest principal stretch exceeds ``stretch``."""
-    beyond = principal_stretches(solid, unknowns) > stretch
+    beyond = principal_stretches(solid, unknowns, stretch) > stretch
     return float(solid.weights[beyond].sum() / solid.weights.sum())
 
 

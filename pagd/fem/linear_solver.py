@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from functools import cache
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -44,6 +45,15 @@ class LinearSolver(Protocol):
         ...
 
 
+@cache
+def _pardiso_entry_point() -> Callable[..., None]:
+    """The function ``pardiso`` of MKL. Looking for the library takes 0.2 s: once is enough."""
+    from pypardiso import PyPardisoSolver
+
+    entry: Callable[..., None] = PyPardisoSolver()._mkl_pardiso
+    return entry
+
+
 class PardisoSolver:
     """MKL Pardiso through the library that pypardiso finds.
 
@@ -70,9 +80,7 @@ class PardisoSolver:
     _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
 
     def __init__(self) -> None:
-        from pypardiso import PyPardisoSolver
-
-        self._call = PyPardisoSolver(mtype=self._SYMMETRIC_INDEFINITE)._mkl_pardiso
+        self._call = _pardiso_entry_point()
         self._handle = np.zeros(64, np.int64)
         self._parameters = np.zeros(64, np.int32)
         for index, value in self._PARAMETERS.items():

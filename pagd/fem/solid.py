@@ -186,8 +186,11 @@ def _energies(
     return isochoric, change
 
 
-def principal_stretches(solid: Solid, unknowns: FloatArray) -> FloatArray:
-    """Largest principal stretch (E, Q) at the quadrature points."""
-    result = np.empty((*solid.weights.shape, 2))
-    solid_kernels.stretches(unknowns, solid.nodes, solid.gradients, result)
-    return result[:, :, 0]
+def principal_stretches(solid: Solid, unknowns: FloatArray, threshold: float = 0.0) -> FloatArray:
+    """Largest principal stretch (E, Q) at the quadrature points.
+
+    Where it is certainly below ``threshold`` it may be given as 0, which is quicker.
+    """
+    result = np.empty(solid.weights.shape)
+    solid_kernels.largest_stretches(unknowns, solid.nodes, solid.gradients, threshold, result)
+    return result

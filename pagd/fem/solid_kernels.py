@@ -337,18 +337,25 @@ def _chunks(count: int) -> int:
 
 
 @compiled
-def stretches(
-    unknowns: FloatArray, nodes: IntArray, gradients: FloatArray, result: FloatArray
+def largest_stretches(
+    unknowns: FloatArray,
+    nodes: IntArray,
+    gradients: FloatArray,
+    threshold: float,
+    result: FloatArray,
 ) -> None:
-    """Largest principal stretch (E, Q) and volume ratio (E, Q) in ``result`` (E, Q, 2)."""
+    """Largest principal stretch (E, Q); 0 where it is certainly below ``threshold``.
+
+    The sum of the squared stretches, tr FFᵀ, bounds the largest: axes are sought only where
+    that does not settle it.
+    """
     gradient = np.empty((3, 3))
-    inverted = np.empty((3, 3))
     for e in range(len(nodes)):
         for q in range(gradients.shape[1]):
             deformation_gradient(unknowns, nodes[e], gradients[e, q], gradient)
-            result[e, q, 1] = inverse(gradient, inverted)
-            squares = np.linalg.eigvalsh(gradient @ gradient.T)
-            result[e, q, 0] = np.sqrt(squares[2])
+            result[e, q] = 0.0
+            if np.sum(gradient * gradient) >= threshold * threshold:
+                result[e, q] = np.sqrt(np.linalg.eigvalsh(gradient @ gradient.T)[2])
 
 
 @compiled

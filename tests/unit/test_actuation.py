@@ -151,7 +151,9 @@ def test_stop_ends_the_analysis(result: ActuationResult) -> None:
     found = free_actuation(block(), MATERIAL, PAPER, SHORT, stop)
     assert (found.status, found.reason) == (Status.self_collision, "Two walls met.")
     assert 6 < found.figures["pressure_kPa"] < 12
-    assert [s.pressure_kPa for s in found.states][:2] == pytest.approx([0, 5])
+    recorded = [s.pressure_kPa for s in found.states]
+    assert recorded[:2] == pytest.approx([0, 5])
+    assert recorded[-1] == pytest.approx(found.figures["pressure_kPa"])
     assert found.history["pressure_kPa"][-1] == pytest.approx(found.figures["pressure_kPa"])
 
 
@@ -180,6 +182,7 @@ def test_not_converged_beyond_a_limit_point() -> None:
     assert found.status is Status.not_converged
     assert found.reason is not None
     assert found.reason.startswith("No step beyond ")
+    assert found.states[-1].pressure_kPa == pytest.approx(found.figures["pressure_kPa"])
     assert 0 < found.figures["pressure_kPa"] < 50
     assert found.history["pressure_kPa"][-1] == pytest.approx(found.figures["pressure_kPa"])
 

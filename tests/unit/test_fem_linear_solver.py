@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, random_array, triu
 
+import pagd.fem.linear_solver as module
 from pagd.errors import InputError
 from pagd.fem.linear_solver import (
     LinearSolver,
@@ -122,6 +123,7 @@ def test_auto_takes_pardiso_where_there_is_mkl() -> None:
 
 def test_auto_does_without_mkl(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pypardiso", None)
+    module._pardiso_entry_point.cache_clear()
     assert linear_solver("auto").name == "superlu"
 
 
