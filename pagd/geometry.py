@@ -31,6 +31,9 @@ Part = Literal["body", "base", "cavity"]
 
 _SETTING = re.compile(r"^(?P<name>\w+) = (?P<value>[^;]+);(?: // \[(?P<range>[^\]:]+:[^\]]+)\])?$")
 _CANNOT_RUN = (126, 127)
+# A binary STL file: 80 bytes of title, the number of facets, and a record each.
+_STL_HEADER = 84
+_STL_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 def write_design_scad(design: Design, rules: GeometryRules, path: Path) -> None:
@@ -95,6 +98,7 @@ def render(
         command = [program, "-q", "--export-format", "binstl", "-o", str(target)]
         command += ["-D", f'part="{part}"', "-D", f"half={str(half).lower()}", str(model)]
         _run(command, time_limit, f"the {part}")
+        _sort_facets(target)
 
 
 def openscad_version() -> str:
@@ -141,6 +145,22 @@ def _run(command: list[str], time_limit: float, what: str) -> None:
     if process.returncode != 0:
         reason = f"OpenSCAD could not make {what}: {_last_lines(messages)}."
         raise StageFailure(Status.invalid_geometry, reason)
+
+
+def _sort_facets(path: Path) -> None:
+    """Bring the facets of a binary STL file into one order; OpenSCAD's differs from run to run.
+
+    A mesher's result depends on the order, and the same design is to give the same mesh. Each
+    facet begins with its smallest corner, which keeps its orientation.
+    """
+    content = path.read_bytes()
+    facets = np.frombuffer(content[_STL_HEADER:], dtype=_STL_FACET).copy()
+    corners = facets["corners"]
+    rank = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)[1].reshape(-1, 3)
+    first = (rank.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    rank = np.take_along_axis(rank, first, axis=1)
+    facets["corners"] = np.take_along_axis(corners, first[:, :, None], axis=1)
+    path.write_bytes(content[:_STL_HEADER] + facets[np.lexsort(rank.T[::-1])].tobytes())
 
 
 def _end_group(process: subprocess.Popen[str]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from pagd import geometry
 from pagd.design import (
     PARAMETERS,
     Channel,
@@ -257,6 +258,21 @@ def test_a_hung_openscad_and_its_children_are_ended(
     time.sleep(1.8)
     assert not late.exists()
     assert not list(tmp_path.glob("*.stl"))
+
+
+def test_the_same_design_gives_the_same_file_whatever_the_order_of_facets(tmp_path: Path) -> None:
+    paths = [tmp_path / "first.stl", tmp_path / "second.stl"]
+    for path in paths:
+        render(MIXED, RULES, "body", path)
+    written = paths[0].read_bytes()
+    assert paths[1].read_bytes() == written
+    facets = np.frombuffer(written[84:], dtype=geometry._STL_FACET)
+    shuffled = facets[np.random.default_rng(0).permutation(len(facets))].copy()
+    shuffled["corners"] = np.roll(shuffled["corners"], 1, axis=1)
+    paths[1].write_bytes(written[:84] + shuffled.tobytes())
+    assert paths[1].read_bytes() != written
+    geometry._sort_facets(paths[1])
+    assert paths[1].read_bytes() == written
 
 
 def test_version() -> None:
