@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from pagd.documents import read_document
-from pagd.materials import find_material
+from pagd.errors import InputError
+from pagd.materials import Use, find_material
 from pagd.validation import check, defaults, schema
 
 __all__ = [
@@ -54,7 +55,19 @@ def load(source: str | None) -> Config:
 def checked(given: Mapping[str, Any], where: str) -> Config:
     """Check a configuration and complete it by the defaults; ``InputError`` names the faults."""
     check(dict(given), "config", where)
-    return completed(given)
+    config = completed(given)
+    _check_steps(config["solve"], where)
+    return config
+
+
+def _check_steps(solve: Mapping[str, float], where: str) -> None:
+    # A schema has no word for what one key asks of another.
+    first, smallest = solve["first_step_kPa"], solve["smallest_step_kPa"]
+    if first < smallest:
+        raise InputError(
+            f"{where}: solve.first_step_kPa = {first:g} must be at least "
+            f"solve.smallest_step_kPa = {smallest:g}."
+        )
 
 
 def completed(given: Mapping[str, Any]) -> Config:
@@ -85,16 +98,17 @@ def material_file(config: Mapping[str, Any]) -> Path:
     return Path(str(importlib.resources.files("pagd") / "data" / "materials.yaml"))
 
 
-def material_as_json(file: str, name: str) -> str:
+def material_as_json(file: str, name: str, use: Use) -> str:
     """Return an entry of the file of materials with its name, as one line of JSON.
 
+    ``use`` is the key of the configuration that names it: material or paper.
     What the entry says about its source is left out: a better citation changes no result.
 
     Raises
     ------
     InputError
-        If there is no such entry.
+        If there is no such entry for this use.
     """
-    entry = {"name": name, **find_material(Path(file), name)}
+    entry = {"name": name, **find_material(Path(file), name, use)}
     entry.pop("source", None)
     return json.dumps(entry, ensure_ascii=False)

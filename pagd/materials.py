@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import yaml
@@ -252,11 +252,16 @@ def read_materials(path: Path) -> dict[str, dict[str, Any]]:
     return entries
 
 
-def find_material(path: Path, name: str) -> dict[str, Any]:
-    """The entry ``name`` of the material file; ``InputError`` names those there are."""
+#: What an entry is used for: ``material`` is an elastomer, ``paper`` a sheet.
+Use: TypeAlias = Literal["material", "paper"]
+
+
+def find_material(path: Path, name: str, use: Use = "material") -> dict[str, Any]:
+    """The entry ``name`` of the material file; ``InputError`` names those there are for ``use``."""
     entries = read_materials(path)
-    if name not in entries:
+    fitting = {n: e for n, e in entries.items() if ("youngs_modulus" in e) == (use == "paper")}
+    if name not in fitting:
         raise InputError(
-            f"material is {name!r}, but must be one of {', '.join(sorted(entries))} (in {path})"
+            f"{use} is {name!r}, but must be one of {', '.join(sorted(fitting))} (in {path})"
         )
-    return entries[name]
+    return fitting[name]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib.resources
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeAlias
 
@@ -71,6 +72,8 @@ def _value(key: str, error: Any) -> str:
 def _type(key: str, error: Any) -> str:
     wanted = error.validator_value
     kinds = [wanted] if isinstance(wanted, str) else wanted
+    if "number" in kinds and _is_number(error.instance):
+        return f"{_value(key, error)} must be finite"
     return f"{_value(key, error)} must be {' or '.join(_KINDS[kind] for kind in kinds)}"
 
 
@@ -113,7 +116,8 @@ def _missing(key: str, error: Any) -> str:
 
 
 def _pattern(key: str, error: Any) -> str:
-    return f"{_value(key, error)} must match {error.validator_value}"
+    # A regular expression is no sentence: its schema says beside it what it asks for.
+    return f"{_value(key, error)} must {error.schema['words']}"
 
 
 def _other(key: str, error: Any) -> str:
@@ -138,6 +142,23 @@ _WORDS: dict[str, Callable[[str, Any], str]] = {
 
 @functools.cache
 def _validator(name: str) -> Any:
-    import jsonschema
+    from jsonschema import Draft202012Validator, validators
 
-    return jsonschema.Draft202012Validator(schema(name))
+    kind: Any = Draft202012Validator
+    if name != _LEFT_TO_THE_RULES:
+        numbers = kind.TYPE_CHECKER.redefine("number", lambda _, value: _is_finite(value))
+        kind = validators.extend(kind, type_checker=numbers)  # type: ignore[no-untyped-call]
+    return kind(schema(name))
+
+
+# A design of numbers that are not finite is refused as one that cannot be built: it gets a record.
+_LEFT_TO_THE_RULES = "designs"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_finite(value: Any) -> bool:
+    # JSON and YAML can spell nan, inf and whole numbers beyond any float.
+    return _is_number(value) and abs(value) <= sys.float_info.max

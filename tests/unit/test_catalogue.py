@@ -57,7 +57,7 @@ def test_the_file_name_serves_as_name(tmp_path: Path) -> None:
         (HEAD + "a," + ROW.replace(",12,", ",12.5,"), r"row 2: N = 12\.5 must be a whole number"),
         (HEAD + "a," + ROW.replace("15.2", ""), r"row 2: W missing"),
         (HEAD + "," + ROW, r"row 2: name missing"),
-        (HEAD + "a b," + ROW, r"row 2: name = 'a b' must match"),
+        (HEAD + "a b," + ROW, r"row 2: name = 'a b' must consist of letters, digits, _ and -"),
         (HEAD + "a," + ROW + "a," + ROW, r"row 3: name = 'a' must be unique"),
         (HEAD.replace("t_b", "tb") + "a," + ROW, r"tb is not a known key \(did you mean t_b\?\)"),
         (HEAD + "a," + ROW.strip() + ",7\n", r"\(no heading\) is not a known key"),

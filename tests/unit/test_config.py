@@ -57,6 +57,12 @@ def test_numbers_may_be_written_as_powers(tmp_path: Path) -> None:
     [
         ("mesh: [1", "is not YAML"),
         ("- 1", "must be a table of keys and values"),
+        ("mesh: {size_mm: .nan}", "mesh.size_mm = nan must be finite"),
+        ("solve: {maximum_pressure_kPa: .inf}", "maximum_pressure_kPa = inf must be finite"),
+        (
+            "solve: {first_step_kPa: 0.01}",
+            "solve.first_step_kPa = 0.01 must be at least solve.smallest_step_kPa = 0.02",
+        ),
         ("mesh: {size_mm: -3}", "mesh.size_mm = -3 must be greater than 0"),
     ],
 )
@@ -89,9 +95,9 @@ def test_every_stage_of_a_design_has_its_part_and_no_more() -> None:
 
 def test_a_material_has_its_name_and_no_citation() -> None:
     file = str(ROOT / "config" / "materials.yaml")
-    entry = json.loads(config.material_as_json(file, "elastosil_m4601"))
+    entry = json.loads(config.material_as_json(file, "elastosil_m4601", "material"))
     assert entry["name"] == "elastosil_m4601"
     assert entry["coefficients"] == {"C10": 0.11, "C20": 0.02}
     assert "source" not in entry
-    with pytest.raises(InputError, match="must be one of"):
-        config.material_as_json(file, "unobtainium")
+    with pytest.raises(InputError, match=r"^paper is 'unobtainium', but must be one of paper \("):
+        config.material_as_json(file, "unobtainium", "paper")

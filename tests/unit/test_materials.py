@@ -93,7 +93,7 @@ def test_default_materials() -> None:
         {"C10": 0.11, "C20": 0.02},
         1130,
     )
-    paper = sheet("paper", find_material(FILE, "paper"))
+    paper = sheet("paper", find_material(FILE, "paper", "paper"))
     assert (paper.youngs_modulus, paper.poisson_ratio, paper.thickness) == (6500, 0.2, 0.1)
 
 
@@ -182,8 +182,13 @@ def test_a_missing_sheet_key() -> None:
 
 
 def test_an_unknown_name_lists_those_there_are() -> None:
-    with pytest.raises(InputError, match=r"material is 'granite'.*elastosil_m4601.*paper"):
+    with pytest.raises(InputError, match=r"material is 'granite'.*elastosil_m4601"):
         find_material(FILE, "granite")
+    for use, name in (("material", "paper"), ("paper", "elastosil_m4601")):
+        with pytest.raises(InputError, match=rf"^{use} is '{name}', but must be one of") as caught:
+            find_material(FILE, name, use)
+        listed = str(caught.value).partition("one of ")[2].partition(" (in")[0].split(", ")
+        assert ("paper" in listed, "dragon_skin_30" in listed) == (use == "paper", use != "paper")
 
 
 def test_exponents_without_a_point_are_numbers(tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ def default_elastomer() -> Elastomer:
 
 
 def default_paper() -> Sheet:
-    return sheet("paper", find_material(_MATERIALS, "paper"))
+    return sheet("paper", find_material(_MATERIALS, "paper", "paper"))
 
 
 @lru_cache(maxsize=8)

@@ -1,5 +1,6 @@
 # The configuration and the designs, checked once, and what the rules ask of them.
 
+import json
 import sys
 from pathlib import Path
 from shlex import quote
@@ -21,7 +22,7 @@ def read_inputs(config, check):
         whole = checked(config, "configuration") if check else completed(config)
         designs = read_designs(whole["designs"], checked=check)
         materials = {
-            role: material_as_json(whole["material_file"], whole[role])
+            role: material_as_json(whole["material_file"], whole[role], role)
             for role in ("material", "paper")
         }
     except InputError as error:
@@ -43,6 +44,12 @@ def design_row(wildcards):
 def config_of(stage):
     """The part of the configuration that a stage depends on, as one line of JSON."""
     return part_as_json(CONFIG, stage)
+
+
+def config_of_pictures():
+    """The same for the pictures of one design: how many designs are drawn changes none of them."""
+    resolution = {"resolution_dpi": CONFIG["figures"]["resolution_dpi"]}
+    return json.dumps({"figures": resolution})
 
 
 def of_all_designs(pattern):
