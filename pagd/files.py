@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import platform
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -18,7 +20,8 @@ __all__ = ["replaced_file", "replaced_folder", "write_text"]
 def replaced_file(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside ``path``; it replaces ``path`` unless the block raises."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=path.suffix)
+    _remove_abandoned(path, path.suffix)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=_own(path), suffix=path.suffix)
     os.close(handle)
     temporary = Path(name)
     try:
@@ -44,6 +47,7 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
     path
         Folder to make. An older one is removed, but only if it is empty or holds ``marker``:
         a mistyped name must not cost anybody a folder of their own.
+        What killed processes left of their attempts at ``path`` is removed as well.
     marker
         Name of a file that only folders made here hold.
 
@@ -54,7 +58,8 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
     """
     _refuse_foreign(path, marker)
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
+    _remove_abandoned(path)
+    temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=_own(path)))
     try:
         yield temporary
         temporary.chmod(0o777 & ~_umask())
@@ -73,6 +78,41 @@ def _refuse_foreign(path: Path, marker: str) -> None:
             f"{path}: exists and holds no {marker}, so it is not replaced; "
             "name a new or an empty folder."
         )
+
+
+# Temporary names: .NAME.HOST.PROCESS.RANDOM. Whoever comes next for the same target can tell
+# what a killed process has left from what another one still writes.
+
+
+def _host(path: Path) -> str:
+    return f".{path.name}.{re.sub('[^A-Za-z0-9-]', '-', platform.node())}."
+
+
+def _own(path: Path) -> str:
+    return f"{_host(path)}{os.getpid()}."
+
+
+def _remove_abandoned(path: Path, suffix: str = "") -> None:
+    """Remove what processes of this host that are no more have left beside ``path``."""
+    name = re.compile(rf"{re.escape(_host(path))}(\d{{1,9}})\.[a-z0-9_]{{8}}{re.escape(suffix)}")
+    for other in list(path.parent.iterdir()):
+        found = name.fullmatch(other.name)
+        if found is None or _is_alive(int(found[1])):
+            continue
+        if other.is_dir() and not other.is_symlink():
+            shutil.rmtree(other, ignore_errors=True)
+        else:
+            other.unlink(missing_ok=True)
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:  # somebody else's
+        return True
+    return True
 
 
 def _umask() -> int:

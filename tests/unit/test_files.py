@@ -1,3 +1,6 @@
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -67,3 +70,41 @@ def test_files_follow_the_umask(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     assert (tmp_path / "a.txt").stat().st_mode == plain.stat().st_mode
     assert (tmp_path / "stage").stat().st_mode == (tmp_path / "folder").stat().st_mode
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from pagd.files import replaced_file, replaced_folder
+root = Path(sys.argv[1])
+with replaced_folder(root / "solve", "mark") as folder, replaced_file(root / "a.csv") as file:
+    (folder / "half").touch()
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_process_left_is_removed(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
+    assert len(list(tmp_path.iterdir())) == 2
+    with replaced_folder(tmp_path / "solve", "mark"):
+        pass
+    write_text(tmp_path / "a.csv", "")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.csv", "solve"]
+
+
+def test_what_others_write_is_left_alone(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
+    (left,) = tmp_path.glob(".solve.*")
+    _, _, host, process, random = left.name.split(".")
+    foreign = [
+        tmp_path / f".solve.{host}.{os.getpid()}.{random}",  # alive
+        tmp_path / f".solve.elsewhere.{process}.{random}",  # another host
+        tmp_path / f".solve-2.{host}.{process}.{random}",  # another target
+        tmp_path / f".solve.{host}.{process}.thesis",  # no name of ours
+    ]
+    for folder in foreign:
+        folder.mkdir()
+    with replaced_folder(tmp_path / "solve", "mark"):
+        pass
+    assert not left.exists()
+    assert all(folder.is_dir() for folder in foreign)
