@@ -10,7 +10,7 @@ STAGE_VERSIONS = {
     "geometry": 1,
     "repair": 1,
     "mesh": 1,
-    "solve": 1,
+    "solve": 2,
     "metrics": 1,
     "figures": 1,
     "summary": 1,

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from pagd.errors import InputError, StageFailure
+from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
 from pagd.mesh.run import MeshGate, mesh_with_limits
 from pagd.mesh.surfaces import SurfacePair
+from pagd.mesh.topology import components, edge_neighbours
+from pagd.mesh.types import Mesh
 from pagd.record import Meter, Record, read_record
 from pagd.stages.stage import Outcome, run_stage
 
-__all__ = ["MESH_NAME", "OwnSurfaces", "mesh_file", "name_of", "run", "run_own"]
+__all__ = ["MESH_NAME", "OwnSurfaces", "identity", "mesh_file", "name_of", "run", "run_own"]
 
 MESH_NAME = "mesh.msh"
 
@@ -71,10 +78,21 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
 
 
 def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
-    """Mesh surfaces of one's own; as :func:`run` otherwise."""
+    """Mesh surfaces of one's own; as :func:`run` otherwise.
+
+    Raises
+    ------
+    InputError
+        If the surfaces are not those of an actuator: no mesher could help.
+    """
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         pair = SurfacePair.from_stl(own.body, own.base, own.half)
+        try:
+            _check_hollow(join(pair))
+        except StageFailure as failure:
+            where = f"body {own.body} and base {own.base}"
+            raise InputError(f"{where}: {failure.reason}") from None
         _mesh(pair, None, folder, outcome, config["mesh"])
 
     return run_stage(
@@ -92,9 +110,31 @@ def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
     )
 
 
+def identity(mesh: Mesh) -> dict[str, Any]:
+    """Return what tells one mesh from another: number of nodes, digest of points and elements."""
+    digest = hashlib.sha256(mesh.points.tobytes() + mesh.tets.tobytes())
+    return {"nodes": len(mesh.points), "mesh_sha256": digest.hexdigest()[:16]}
+
+
 def name_of(file: Path) -> str:
     """Return a name for a design from that of a file."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "own"
+
+
+def _check_hollow(solid: Complex) -> None:
+    """Refuse a solid without a void inside, and a half model that is none."""
+    y = solid.points[solid.triangles][:, :, 1]
+    if solid.half and abs(float(y.min())) > solid.tolerance:
+        raise InputError(
+            f"half: the half y ≥ 0 of an actuator must begin at y = 0, not at {y.min():.6g} mm."
+        )
+    cut = (np.abs(y) <= solid.tolerance).all(axis=1) & solid.half
+    walls = solid.triangles[(solid.patches != Patch.paper) & ~cut]
+    if components(edge_neighbours(walls), len(walls)).max() == 0:
+        raise InputError(
+            "body: must be hollow, but has no surface apart from the outside"
+            f"{'' if solid.half else ' (half of a symmetric actuator must be given as such)'}."
+        )
 
 
 _LIBRARIES = ("gmsh", "numpy", "pytetwild")

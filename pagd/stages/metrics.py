@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.errors import Status
+from pagd.errors import InputError, Status
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import Thresholds, Trajectory, is_still, measure, performance
 from pagd.record import Meter, Record, read_record
 from pagd.sections import Stations, stations_of
 from pagd.stages.geometry import read_design
-from pagd.stages.mesh import mesh_file
+from pagd.stages.mesh import identity, mesh_file
 from pagd.stages.sections import even_stations_of, sections_of
 from pagd.stages.solve import HISTORY_NAME, STATES_NAME
 from pagd.stages.stage import Outcome, run_stage
@@ -66,6 +66,11 @@ def run(folders: Folders, out: Path, config: Mapping[str, Any], sections: int = 
         Completed configuration; uses ``metrics``.
     sections
         Number of evenly spaced sections where there is no design.
+
+    Raises
+    ------
+    InputError
+        If the mesh is not the one that was solved.
     """
     upstream = folders.records()
     thresholds = Thresholds(**config["metrics"])
@@ -119,6 +124,7 @@ def _sizes(upstream: list[Record]) -> dict[str, Any]:
 def _measured(folders: Folders, out: Path, sections: int, thresholds: Thresholds) -> Columns:
     mesh = read_msh(mesh_file(folders.mesh))
     solved = read_record(folders.solve)
+    _refuse_other_mesh(folders, mesh, solved)
     trajectory = _trajectory(folders, mesh, sections)
     history = read_table(folders.solve / HISTORY_NAME)
     volume = solved.figures["solid_volume_mm3"]
@@ -128,6 +134,17 @@ def _measured(folders: Folders, out: Path, sections: int, thresholds: Thresholds
     write_table(out / TRAJECTORY_NAME, TRAJECTORY, table | trajectory.columns())
     write_table(out / PERFORMANCE_NAME, MEASURES, measures | strains)
     return measures | strains
+
+
+def _refuse_other_mesh(folders: Folders, mesh: Mesh, solved: Record) -> None:
+    here = identity(mesh)
+    there = {key: solved.figures.get(key) for key in here}
+    if here != there:
+        raise InputError(
+            f"mesh = {folders.mesh} must be the mesh that was solved in {folders.solve}: it has "
+            f"{here['nodes']} nodes (digest {here['mesh_sha256']}), that one {there['nodes']} "
+            f"({there['mesh_sha256']})."
+        )
 
 
 _STRAINS = ("strain_max", "strain_p99")

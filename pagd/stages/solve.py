@@ -14,12 +14,12 @@ from pagd.actuation import Actuation, ActuationResult, Progress, Stop, free_actu
 from pagd.config import material_file
 from pagd.documents import read_document
 from pagd.errors import InputError, Status
-from pagd.materials import Elastomer, Sheet, elastomer, find_material, sheet
+from pagd.materials import Elastomer, Sheet, Use, elastomer, find_material, sheet
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import measure, work_of_pressure
 from pagd.record import Meter, Record, read_record
-from pagd.stages.mesh import mesh_file, name_of
+from pagd.stages.mesh import identity, mesh_file, name_of
 from pagd.stages.sections import even_stations_of, sections_of
 from pagd.stages.stage import Outcome, run_stage
 from pagd.states import States, write_states
@@ -61,8 +61,8 @@ def materials_of(
     """
     file = material_file(config)
     return Materials(
-        elastomer(*_entry(material or config["material"], file)),
-        sheet(*_entry(paper or config["paper"], file)),
+        elastomer(*_entry("material", material or config["material"], file)),
+        sheet(*_entry("paper", paper or config["paper"], file)),
     )
 
 
@@ -112,7 +112,7 @@ def run(
                 stop=_bending_stop(body, limit),
                 progress=progress,
             )
-        outcome.figures |= _figures(result)
+        outcome.figures |= _figures(result) | identity(body)
         outcome.end(result.status, result.reason)
         _write(body, result, folder, vtu=vtu)
 
@@ -132,12 +132,12 @@ def run(
     )
 
 
-def _entry(named: str, file: Path) -> tuple[str, dict[str, Any]]:
+def _entry(use: Use, named: str, file: Path) -> tuple[str, dict[str, Any]]:
     if not named.lstrip().startswith("{"):
-        return named, find_material(file, named)
-    entry, _ = read_document(named, "material")
+        return named, find_material(file, named, use)
+    entry, _ = read_document(named, use)
     if "name" not in entry:
-        raise InputError("material: name is missing; a result always names its material.")
+        raise InputError(f"{use}: name is missing; a result always names its material.")
     return str(entry.pop("name")), entry
 
 
