@@ -14,7 +14,7 @@ from pagd.tables import PERFORMANCE, TRAJECTORY, concatenate, write_rows
 
 __all__ = ["performance_row", "write_summary", "write_trajectories"]
 
-#: Columns of the table for people: heading, key of the record's figures, format.
+#: Columns of the table for people: heading, key of the figures, format ('z': no minus zero).
 _FOR_PEOPLE = (
     ("mode drawn", "mode", ""),
     ("mode measured", "measured_mode", ""),
@@ -22,12 +22,12 @@ _FOR_PEOPLE = (
     ("mesh size, mm", "size_mm", "g"),
     ("tetrahedra", "tets", ""),
     ("pressure, kPa", "pressure_kPa", "g"),
-    ("bending, °", "bending_deg", ".1f"),
-    ("twist, °", "twist_deg", ".1f"),
-    ("tip x, mm", "tip_x_mm", ".1f"),
-    ("tip y, mm", "tip_y_mm", ".1f"),
-    ("tip z, mm", "tip_z_mm", ".1f"),
-    ("energy balance", "energy_balance", ".4f"),
+    ("bending, °", "bending_deg", "z.1f"),
+    ("twist, °", "twist_deg", "z.1f"),
+    ("tip x, mm", "tip_x_mm", "z.1f"),
+    ("tip y, mm", "tip_y_mm", "z.1f"),
+    ("tip z, mm", "tip_z_mm", "z.1f"),
+    ("energy balance", "energy_balance", "z.4f"),
     ("time, s", "wall_s", ".1f"),
 )
 
@@ -78,7 +78,8 @@ def _for_people(records: Sequence[Record]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["design", *(heading for heading, _, _ in _FOR_PEOPLE), "status", "reason"])
     for record in records:
-        cells = [_cell(record.figures.get(key), form) for _, key, form in _FOR_PEOPLE]
+        figures = record.figures | performance_row(record)
+        cells = [_cell(figures.get(key), form) for _, key, form in _FOR_PEOPLE]
         writer.writerow([record.design_id, *cells, record.status.value, record.reason or ""])
     return text.getvalue()
 

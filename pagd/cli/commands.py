@@ -104,6 +104,8 @@ def metrics(options: Namespace) -> int:
     """Run the stage metrics."""
     from pagd.stages import metrics as stage
 
+    if options.sections < 2:
+        raise InputError(f"--sections = {options.sections} must be at least 2.")
     folders = stage.Folders(
         mesh=options.mesh, solve=options.solve, geometry=options.geometry, repair=options.repair
     )
@@ -173,6 +175,7 @@ def _config(options: Namespace) -> dict[str, Any]:
     config = configuration.load(options.config)
     given = {name: value for name, value in vars(options).items() if value is not None}
     for name, value in given.items():
+        # The parser names an option that stands for a key of a section "section.key".
         section, _, key = name.rpartition(".")
         if section:
             config[section][key] = value

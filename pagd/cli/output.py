@@ -79,10 +79,10 @@ def print_result(record: Record) -> None:
     if "bending_deg" not in figures:
         return
     print(
-        f"{record.design_id}: bends by {figures['bending_deg']:.1f}° and twists by "
-        f"{figures['twist_deg']:.1f}° at {figures['pressure_kPa']:g} kPa "
+        f"{record.design_id}: bends by {figures['bending_deg']:z.1f}° and twists by "
+        f"{figures['twist_deg']:z.1f}° at {figures['pressure_kPa']:g} kPa "
         f"({figures['material']}, {figures['tets']} tetrahedra, "
-        f"energy balance {100 * figures['energy_balance']:.2f} %)"
+        f"energy balance {100 * figures['energy_balance']:z.2f} %)"
     )
 
 

@@ -19,7 +19,7 @@ examples:
   pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
   pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
 
-exit codes: 0 done, 1 the design failed (its record says why), 2 bad input
+exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a fault of pagd
 """
 
 

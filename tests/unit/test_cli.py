@@ -74,6 +74,23 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
         (["repair", "--geometry", "absent", "--out", "out"], "pagd: absent/record.json: not a rea"),
         (["mesh", "--body", "b.stl", "--out", "out"], "pagd: --body and --base must be given toge"),
         (["mesh", "--out", "out"], "pagd: mesh needs either --geometry and --repair, or --body"),
+        (["mesh", "--size-mm", "nan", "--out", "out"], "pagd: command line: mesh.size_mm = nan mu"),
+        (
+            ["solve", "--mesh", "a", "--pressure-kPa", "inf", "--out", "out"],
+            "pagd: command line: solve.maximum_pressure_kPa = inf must be finite.",
+        ),
+        (
+            ["metrics", "--mesh", "a", "--solve", "b", "--sections", "1", "--out", "out"],
+            "pagd: --sections = 1 must be at least 2.",
+        ),
+        (
+            ["solve", "--mesh", "a", "--paper", "nope", "--out", "out"],
+            "pagd: paper is 'nope', but must be one of paper (in ",
+        ),
+        (
+            ["solve", "--mesh", "a", "--paper", '{"E": 1}', "--out", "out"],
+            "pagd: paper: name is missing",
+        ),
         (["mesh", "--size-mm", "-1", "--out", "out"], "pagd: command line: mesh.size_mm = -1.0 mu"),
         (["solve", "--mesh", "absent.msh", "--out", "out"], "pagd: absent.msh: there is no such"),
         (["solve", "--mesh", "a", "--threads", "0", "--out", "out"], "pagd: --threads = 0 must be"),
@@ -93,6 +110,20 @@ def test_bad_input_is_one_sentence_and_code_2(
     assert told.startswith(sentence)
     assert told.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_fault_of_pagd_is_told_from_a_failed_design(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(options: object) -> int:
+        raise ZeroDivisionError("out of order")
+
+    monkeypatch.setattr("pagd.cli.commands.show_design", broken)
+    assert main(["design", "show", json.dumps(GOOD)]) == 70
+    told = capsys.readouterr().err
+    assert told.startswith("Traceback")
+    assert "ZeroDivisionError: out of order" in told
+    assert told.endswith("please report it\n")
 
 
 def test_a_failed_design_is_1_for_people_and_0_for_the_workflow(
