@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from pagd.figures.load import Path3D
-from pagd.figures.style import design_colours, new_figure, save
+from pagd.figures.style import design_colours, new_figure, number, save
 from pagd.figures.trajectories import load_all
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def _draw_tips(
         tip = values[name][:, -1]
         axes.plot(path.pressure_kPa, tip, "o-", color=colours[name], markersize=4, label=name)
         axes.annotate(
-            f"{tip[-1]:.0f}°",
+            f"{number(tip[-1], 0)}°",
             (path.pressure_kPa[-1], tip[-1]),
             xytext=(6, 0),
             textcoords="offset points",

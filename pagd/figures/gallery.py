@@ -10,12 +10,12 @@ from pagd.errors import InputError
 from pagd.figures.deformed import VIEW, Shapes, add_strain_bar, draw_triad, strain_limit
 from pagd.figures.load import has_states, has_trajectory, load_states, load_trajectory
 from pagd.figures.scene import Box
-from pagd.figures.style import new_figure, save
+from pagd.figures.style import new_figure, number, save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_gallery", "gallery_figure"]
+__all__ = ["caption", "draw_gallery", "gallery_figure"]
 
 
 def draw_gallery(design_folders: Sequence[Path], out: Path) -> None:
@@ -30,7 +30,7 @@ def draw_gallery(design_folders: Sequence[Path], out: Path) -> None:
     if not solved:
         raise InputError("None of the designs has deformed states to draw.")
     shapes = {folder.name: Shapes.of(load_states(folder)) for folder in solved}
-    save(gallery_figure(shapes, {f.name: _angles(f) for f in solved}), out)
+    save(gallery_figure(shapes, {f.name: caption(f) for f in solved}), out)
 
 
 def gallery_figure(shapes: Mapping[str, Shapes], captions: Mapping[str, str]) -> Figure:
@@ -55,9 +55,10 @@ def gallery_figure(shapes: Mapping[str, Shapes], captions: Mapping[str, str]) ->
     return figure
 
 
-def _angles(folder: Path) -> str:
+def caption(folder: Path) -> str:
     """Return bending and twist of the tip at the highest pressure, or nothing."""
     if not has_trajectory(folder):
         return ""
     path = load_trajectory(folder)
-    return f"bends {path.bending_deg[-1, -1]:.0f}°, twists {path.twist_deg[-1, -1]:.0f}°"
+    bending, twist = (number(a[-1, -1], 0) for a in (path.bending_deg, path.twist_deg))
+    return f"bends {bending}°, twists {twist}°"

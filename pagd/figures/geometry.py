@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 __all__ = ["draw_geometry", "geometry_figure"]
 
 _VIEW = (0.35, -1.0, 0.62)
+# Largest plan and side view, inches.
+_WIDEST, _HIGHEST = 10.0, 3.0
 
 
 def draw_geometry(design_folder: Path, out: Path) -> None:
@@ -48,8 +50,9 @@ def geometry_figure(
     Without a design, as for surfaces of one's own, the dimensions are left out.
     """
     length, width, height = (body.bounds[i + 1] - body.bounds[i] for i in (0, 2, 4))
-    # Plan and side view on one scale, across the whole width of the picture.
-    heights = [3.8, *(10.0 * side / length + 0.6 for side in (width, height)), 2.8]
+    # Plan and side view on one scale: across the whole width, unless the body is short.
+    scale = min(_WIDEST / length, _HIGHEST / max(width, height))
+    heights = [3.8, *(scale * side + 0.6 for side in (width, height)), 2.8]
     heights = heights if design else heights[:3]
     figure = new_figure(11.0, sum(heights))
     rows = figure.add_gridspec(len(heights), 1, height_ratios=heights)

@@ -19,7 +19,7 @@ from pagd.figures.load import (
     load_states,
     load_trajectory,
 )
-from pagd.figures.style import STRAIN_COLOURS, STRAIN_LABEL, design_colours
+from pagd.figures.style import STRAIN_COLOURS, STRAIN_LABEL, design_colours, number
 from pagd.figures.viewer import path_data, viewer_data
 from pagd.files import write_text
 from pagd.record import Record
@@ -89,7 +89,7 @@ def _last_record(folder: Path) -> Record | None:
 
 
 def _number(digits: int, factor: float = 1.0) -> Callable[[Any], str]:
-    return lambda value: f"{factor * value:,.{digits}f}".replace("-", "−")
+    return lambda value: number(factor * value, digits)
 
 
 #: Columns of the table: heading, unit, key in the record's figures, how to write the value.

@@ -28,6 +28,7 @@ __all__ = [
     "STRAIN_MAP",
     "design_colours",
     "new_figure",
+    "number",
     "save",
     "set_resolution",
 ]
@@ -99,3 +100,8 @@ def save(figure: Figure, out: Path) -> None:
 def design_colours(names: Sequence[str]) -> dict[str, str]:
     """Return a colour a design, in their order."""
     return {name: _CYCLE[i % len(_CYCLE)] for i, name in enumerate(names)}
+
+
+def number(value: float, digits: int) -> str:
+    """Return a number as people read it: rounded, grouped by thousands, zero without a sign."""
+    return f"{round(value, digits) + 0.0:,.{digits}f}".replace("-", "−")

@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_trajectories", "load_all", "trajectories_figure"]
 
-# Pressures whose shape is drawn.
-_MOST = 11
+# Pressures whose shape is drawn, and designs side by side in the legend.
+_MOST, _IN_A_ROW = 11, 5
+# Shortest side of a panel, as a share of its longest.
+_SHORTEST = 0.3
 
 
 def draw_trajectories(design_folders: Sequence[Path], out: Path) -> None:
@@ -54,8 +56,9 @@ def trajectories_figure(paths: Mapping[str, Path3D]) -> Figure:
         _draw_side(axes, path, colours[name], limit)
         axes.set_title(f"{name}: centre line from the side", color=colours[name])
     panels[0].set_ylabel("z, mm")
+    _widen(panels[0])
     _add_pressure_bar(upper, list(panels), limit)
-    _draw_tips(lower, paths, colours)
+    _draw_tips(lower, paths, colours, limit)
     return figure
 
 
@@ -76,25 +79,50 @@ def _draw_side(axes: Axes, path: Path3D, colour: str, limit: float) -> None:
     axes.set_xlabel("x, mm")
 
 
-def _draw_tips(figure: Any, paths: Mapping[str, Path3D], colours: Mapping[str, str]) -> None:
-    """Draw the tips of all designs in space and in two projections."""
+def _draw_tips(
+    figure: Any, paths: Mapping[str, Path3D], colours: Mapping[str, str], limit: float
+) -> None:
+    """Draw the tips of all designs in space and in two projections, one legend below.
+
+    Pressure is the colour inside the markers, as in the panels above: labels at the points would
+    cover each other where curves meet.
+    """
     grid = figure.add_gridspec(1, 3, width_ratios=[1.5, 0.7, 1.35])
     side, front = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
     space = figure.add_subplot(grid[2], projection="3d")
     for name, path in paths.items():
-        tips = path.positions[:, -1]
         _draw_in_space(space, path, name, colours[name])
-        for axes, (i, j) in ((side, (0, 2)), (front, (1, 2))):
-            axes.plot(tips[:, i], tips[:, j], "o-", color=colours[name], markersize=3.5, label=name)
-            _label_pressures(axes, path, i, j, colours[name])
+        _draw_projected(side, path, 0, colours[name], limit)
+        _draw_projected(front, path, 1, colours[name], limit)
     for axes, axis in ((side, "x"), (front, "y")):
         axes.set_aspect("equal")
         axes.set(xlabel=f"{axis}, mm", ylabel="z, mm")
-    side.set_title("tips from the side")
+        _widen(axes)
+    side.set_title("tips from the side, inner colour: pressure")
     front.set_title("tips from the front")
-    side.legend(loc="best")
+    legend = [f"{name}, to {path.pressure_kPa[-1]:g} kPa" for name, path in paths.items()]
+    figure.legend(side.lines, legend, loc="outside lower left", ncols=min(len(legend), _IN_A_ROW))
     space.set_title("tips (thick) and centre lines at the highest pressure")
     _equal_box(space, paths)
+
+
+def _draw_projected(axes: Axes, path: Path3D, across: int, colour: str, limit: float) -> None:
+    """Draw the path of a tip in the plane of axis `across` and z."""
+    tips = path.positions[:, -1]
+    along, z = tips[:, across], tips[:, 2]
+    axes.plot(along, z, color=colour)
+    axes.scatter(
+        along,
+        z,
+        c=path.pressure_kPa,
+        cmap=PRESSURE_MAP,
+        vmin=0.0,
+        vmax=limit,
+        edgecolors=colour,
+        linewidths=1.2,
+        s=22,
+        zorder=3,
+    )
 
 
 def _draw_in_space(axes: Any, path: Path3D, name: str, colour: str) -> None:
@@ -104,23 +132,13 @@ def _draw_in_space(axes: Any, path: Path3D, name: str, colour: str) -> None:
     axes.plot(*path.positions[-1].T, color=colour, linewidth=1.0, alpha=0.8)
 
 
-def _label_pressures(axes: Axes, path: Path3D, i: int, j: int, colour: str) -> None:
-    """Label the pressure of some of a tip's points, apart from each other."""
-    tips = path.positions[:, -1]
-    apart = 0.14 * float(np.ptp(tips, axis=0).max())
-    last = np.full(3, np.inf)
-    for k in range(len(tips) - 1, 0, -1):
-        if np.linalg.norm(tips[k, [i, j]] - last[[i, j]]) < apart:
-            continue
-        last = tips[k]
-        axes.annotate(
-            f"{path.pressure_kPa[k]:g} kPa" if k == len(tips) - 1 else f"{path.pressure_kPa[k]:g}",
-            (tips[k, i], tips[k, j]),
-            xytext=(5, 3),
-            textcoords="offset points",
-            fontsize=7.5,
-            color=colour,
-        )
+def _widen(axes: Axes) -> None:
+    """Show a strip around a path that hardly leaves a line: equal scales would leave no room."""
+    limits = np.array([axes.get_xlim(), axes.get_ylim()])
+    sizes = np.diff(limits, axis=1)
+    missing = np.maximum(_SHORTEST * sizes.max() - sizes, 0.0)
+    x, y = limits + missing * [-0.5, 0.5]
+    axes.set(xlim=x, ylim=y)
 
 
 def _equal_box(axes: Any, paths: Mapping[str, Path3D]) -> None:
@@ -128,11 +146,14 @@ def _equal_box(axes: Any, paths: Mapping[str, Path3D]) -> None:
     points = np.vstack([path.positions[[0, -1]].reshape(-1, 3) for path in paths.values()])
     points = np.vstack([points, *(path.positions[:, -1] for path in paths.values())])
     low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.04 * float((high - low).max())
+    largest = float((high - low).max())
+    # As in the flat panels, no side is so short that its ticks meet.
+    missing = np.maximum(_SHORTEST * largest - (high - low), 0.0)
+    low, high, margin = low - missing / 2, high + missing / 2, 0.04 * largest
     axes.set(
         **{f"{n}lim": (a - margin, b + margin) for n, a, b in zip("xyz", low, high, strict=True)}
     )
-    axes.set_box_aspect(high - low + 2.0 * margin, zoom=0.95)
+    axes.set_box_aspect(high - low + 2.0 * margin, zoom=0.87)
     axes.set(xlabel="x, mm", ylabel="y, mm", zlabel="z, mm")
     axes.yaxis.set_major_locator(MaxNLocator(3))
     axes.view_init(elev=22.0, azim=-58.0)

@@ -62,10 +62,16 @@ def path_data(path: Path3D) -> dict[str, Any]:
     """Return the trajectory of a design: pressures, tip, centre lines (x, z) and angles."""
     return {
         "pressure_kPa": path.pressure_kPa.round(6).tolist(),
-        "lines": np.moveaxis(path.positions, 2, 1).round(2).tolist(),
-        "bending_deg": path.bending_deg[:, -1].round(2).tolist(),
-        "twist_deg": path.twist_deg[:, -1].round(2).tolist(),
+        "lines": _rounded(np.moveaxis(path.positions, 2, 1)),
+        "bending_deg": _rounded(path.bending_deg[:, -1]),
+        "twist_deg": _rounded(path.twist_deg[:, -1]),
     }
+
+
+def _rounded(values: FloatArray) -> list[Any]:
+    # Adding zero takes the sign off a negative one.
+    rounded: list[Any] = (values.round(2) + 0.0).tolist()
+    return rounded
 
 
 def _packed(values: NDArray[Any], kind: str) -> str:

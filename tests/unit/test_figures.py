@@ -5,28 +5,35 @@ import json
 import re
 import shutil
 import subprocess
+import sys
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 import pyvista as pv
+import yaml
+from matplotlib.axes import Axes
+from matplotlib.legend import Legend
+from matplotlib.text import Text
 from PIL import Image
 
 from pagd.design import Design
 from pagd.errors import InputError, Status
-from pagd.figures import load, viewer
-from pagd.figures.angles import draw_angles
+from pagd.figures import gallery, load, viewer
+from pagd.figures.angles import angles_figure, draw_angles
 from pagd.figures.deformed import Shapes, draw_deformed, strain_limit
 from pagd.figures.drawing import draw_side_by_side
 from pagd.figures.gallery import draw_gallery
-from pagd.figures.geometry import draw_geometry
+from pagd.figures.geometry import draw_geometry, geometry_figure
 from pagd.figures.load import Path3D, States
 from pagd.figures.mesh import draw_mesh
 from pagd.figures.outline import section_loops
 from pagd.figures.page import write_page
 from pagd.figures.scene import Camera, Sheet, render
+from pagd.figures.style import number
 from pagd.figures.surface import cut_faces, sharp_edges, skin_of, split_faces
-from pagd.figures.trajectories import draw_trajectories
+from pagd.figures.trajectories import draw_trajectories, trajectories_figure
 from pagd.mesh.msh import write_msh
 from pagd.mesh.primitives import hollow_block
 from pagd.record import Record, versions, write_record
@@ -34,6 +41,7 @@ from pagd.states import States as SolvedStates
 from pagd.states import write_states
 from pagd.tables import TRAJECTORY, write_table
 
+ROOT = Path(__file__).parents[2]
 SIZE = (20.0, 5.0, 6.0)
 PRESSURE = np.array([10.0, 20.0, 30.0])
 
@@ -289,6 +297,91 @@ def test_geometry_is_drawn_with_and_without_a_design(tmp_path):
     assert shapes[1][1] > shapes[0][1]
 
 
+def labels(figure):
+    """All text of a picture, as it is drawn."""
+    figure.draw_without_rendering()
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+
+
+@pytest.mark.parametrize(
+    ("count", "alpha", "expected", "absent"),
+    [
+        (1, 0, {"$t_{ab}$ 2"}, "$t_n$ 4"),
+        (1, 1, {"$t_{ab}$ 2 / cos θ = 2.13"}, "$t_n$ 4"),
+        (2, 0, {"$t_{ab}$ 2", "$t_n$ 4"}, None),
+        # Half a skew, 5 mm tan 20°, widens the gap between the two kinds of chambers.
+        (2, 0.5, {"$t_{ab}$ 2", "5.82"}, "$t_n$ 4"),
+        (2, 1, {"$t_{ab}$ 2 / cos θ = 2.13", "$t_n$ 4"}, None),
+    ],
+)
+def test_few_chambers_have_the_dimensions_that_there_are(count, alpha, expected, absent):
+    design = Design(
+        L=13.0, W=10.0, H=7.0, t=2.0, t_n=4.0, t_h=2.0, t_ab=2.0, t_b=2.0, N=count,
+        theta=20.0 if alpha else 0.0, alpha=alpha,
+    )  # fmt: skip
+    body = pv.Box((0.0, design.L_T, -5.0, 5.0, -1.0, 7.0)).triangulate()
+    base = pv.Box((0.0, design.L_T, -5.0, 5.0, -2.0, -1.0)).triangulate()
+    figure = geometry_figure("few", body, base, design)
+    found = labels(figure)
+    assert {"$L$ 13", "$H$ 7", "$W$ 10", "$t$ 2", "$t_b$ 2"} | expected <= set(found)
+    assert absent not in found
+    # A short body does not make a long picture.
+    assert figure.get_figheight() < 1.5 * figure.get_figwidth()
+
+
+def path_of(stations, twist=0.0, bending=5.0):
+    """A trajectory at three pressures that leaves the x axis downwards only."""
+    p, s = np.meshgrid([0.0, 5.0, 10.0], np.arange(stations), indexing="ij")
+    positions = np.stack([10.0 * s, 0.0 * s, -0.02 * p * s], axis=-1)
+    return Path3D(p[:, 0], positions, bending * s * p / 10.0, twist * s * p / 10.0)
+
+
+@pytest.mark.parametrize("chambers", [1, 2])
+def test_paths_of_few_chambers_are_drawn_with_room_for_ticks(chambers):
+    figure = trajectories_figure({"few": path_of(chambers + 1)})
+    figure.draw_without_rendering()
+    for axes in figure.findobj(Axes):
+        if axes.get_ylabel() == "z, mm":
+            sides = np.sort([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())])
+            assert sides[0] > 0.25 * sides[1]
+    joints = angles_figure({"few": path_of(chambers + 1)}).axes[2].lines[0]
+    assert list(joints.get_xdata()) == list(range(1, chambers + 1))
+    np.testing.assert_allclose(joints.get_ydata(), 5.0)
+
+
+def test_no_text_lies_in_the_panels_of_the_tips():
+    """The designs end in the same point, where labels would cover each other."""
+    paths = {"first": path_of(3), "second": path_of(3, twist=1.0)}
+    figure = trajectories_figure(paths)
+    found = labels(figure)
+    assert {"first, to 10 kPa", "second, to 10 kPa"} <= set(found)
+    (legend,) = figure.findobj(Legend)
+    around = legend.get_window_extent()
+    for axes in figure.findobj(Axes):
+        assert not around.overlaps(axes.get_tightbbox())
+        assert not axes.texts
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "expected"),
+    [(-0.04, 1, "0.0"), (-0.3, 0, "0"), (-0.0, 2, "0.00"), (0.0, 0, "0"), (-0.06, 1, "−0.1"),
+     (-1234.56, 1, "−1,234.6"), (1080, 0, "1,080")],
+)  # fmt: skip
+def test_zero_has_no_sign(value, digits, expected):
+    assert number(value, digits) == expected
+
+
+def test_a_twist_of_nearly_nothing_is_written_as_zero(tmp_path):
+    assert "0°" in labels(angles_figure({"one": path_of(3, twist=-1e-3)}))
+    folder = solved(tmp_path / "still")
+    table = trajectory("still")
+    table["twist_deg"] = table["twist_deg"] * -1e-4
+    write_table(folder / "metrics" / "trajectory.parquet", TRAJECTORY, table)
+    assert gallery.caption(folder) == "bends 60°, twists 0°"
+    text = json.dumps(viewer.path_data(load.load_trajectory(folder)))
+    assert not re.search(r"-0(\.0+)?[,\]]", text)
+
+
 def test_equal_results_give_equal_files(designs, tmp_path):
     for name in ("first", "second"):
         draw_angles(designs, tmp_path / f"{name}.png")
@@ -416,6 +509,10 @@ def test_page_draws_without_errors_in_a_browser(page, tmp_path):
     assert document.count('class="plot-container') == 4 + 2 * 2
     assert document.count('class="gl-container') >= 2
     assert "30 kPa</output>" in document
+    # The key of the designs is text of the page; no legend lies over a title of theirs.
+    key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
+    assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
+    assert document.count('class="legend"') == 2
 
 
 def test_the_drawing_shows_the_faces_towards_the_eye_and_names_the_designs(tmp_path):
@@ -437,3 +534,31 @@ def test_the_drawing_shows_the_faces_towards_the_eye_and_names_the_designs(tmp_p
 def test_a_drawing_of_nothing_is_refused(tmp_path):
     with pytest.raises(InputError, match="None of the designs"):
         draw_side_by_side([tmp_path], tmp_path / "designs.svg")
+
+
+# ---- workflow -------------------------------------------------------------------------------
+
+
+def figures_command(folder, **settings):
+    """The command that the workflow would draw the design `bending` with."""
+    config = folder / "config"
+    config.mkdir(exist_ok=True)
+    for name in ("materials.yaml", "table2.csv"):
+        shutil.copy(ROOT / "config" / name, config)
+    (config / "config.yaml").write_text(yaml.safe_dump({"figures": settings}))
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command += ["--cores", "1", "--dry-run", "--printshellcmds"]
+    target = "results/designs/bending/figures"
+    answer = subprocess.run(
+        [*command, target], cwd=folder, capture_output=True, text=True, check=True
+    )
+    (found,) = re.findall(r"pagd figures .*", answer.stdout + answer.stderr)
+    return found
+
+
+def test_pictures_of_a_design_do_not_depend_on_how_many_are_drawn(tmp_path):
+    once, fewer = (figures_command(tmp_path, drawn_designs=count) for count in (20, 1))
+    assert once == fewer
+    finer = figures_command(tmp_path, drawn_designs=1, resolution_dpi=300)
+    assert "300" in finer
+    assert finer != fewer

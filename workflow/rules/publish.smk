@@ -33,7 +33,7 @@ rule figures:
         runtime=20,
     params:
         version=STAGE_VERSIONS["figures"],
-        config=config_of("figures"),
+        config=config_of_pictures(),
         design=design_folder,
     message:
         "Draw design {wildcards.design}: geometry, mesh and deformed shapes."

@@ -61,12 +61,24 @@ function curve(design, x, y, more) {
   };
 }
 
+// One key for all plots, as text of the page: it wraps, and covers no title.
+function drawKey(designs) {
+  const entries = designs.map((design) => {
+    const entry = document.createElement("li");
+    entry.textContent = design.name;
+    entry.style.setProperty("--design", design.colour);
+    return entry;
+  });
+  document.getElementById("key").replaceChildren(...entries);
+}
+
 function drawTogether() {
   const designs = content.designs.filter((design) => design.path);
   if (!designs.length) {
     document.getElementById("together").hidden = true;
     return;
   }
+  drawKey(designs);
   const tip = (design, i) => design.path.lines.map((line) => line[i][line[i].length - 1]);
   const label = (design) => design.path.pressure_kPa.map((p) => p + " kPa");
   const place = { hovertemplate: "%{text}<br>%{x} mm, %{y} mm" };
@@ -75,8 +87,8 @@ function drawTogether() {
     ...curve(design, last(design, i), last(design, 2), { mode: "lines", hoverinfo: "skip" }),
     line: { color: design.colour, width: 6 },
     opacity: 0.25,
-    showlegend: false,
   });
+  const plain = { showlegend: false };
   const equal = { scaleanchor: "x", scaleratio: 1 };
   register(
     document.getElementById("plot-side"),
@@ -85,26 +97,26 @@ function drawTogether() {
         shape(d, 0),
         curve(d, tip(d, 0), tip(d, 2), { text: label(d), ...place }),
       ]),
-    () => flatLayout("Tips from the side", axis("x, mm"), axis("z, mm", equal)),
+    () => flatLayout("Tips from the side", axis("x, mm"), axis("z, mm", equal), plain),
   );
   register(
     document.getElementById("plot-front"),
     () =>
       designs.flatMap((d) => [
         shape(d, 1),
-        curve(d, tip(d, 1), tip(d, 2), { text: label(d), ...place, showlegend: false }),
+        curve(d, tip(d, 1), tip(d, 2), { text: label(d), ...place }),
       ]),
-    () => flatLayout("Tips from the front", axis("y, mm"), axis("z, mm", equal)),
+    () => flatLayout("Tips from the front", axis("y, mm"), axis("z, mm", equal), plain),
   );
   for (const [id, title] of [
     ["bending", "Bending of the tip"],
     ["twist", "Twist of the tip"],
   ]) {
-    const angle = { hovertemplate: "%{x} kPa: %{y:.1f}°", showlegend: false };
+    const angle = { hovertemplate: "%{x} kPa: %{y:.1f}°" };
     register(
       document.getElementById("plot-" + id),
       () => designs.map((d) => curve(d, d.path.pressure_kPa, d.path[id + "_deg"], angle)),
-      () => flatLayout(title, axis("pressure, kPa"), axis("degrees")),
+      () => flatLayout(title, axis("pressure, kPa"), axis("degrees"), plain),
     );
   }
 }
