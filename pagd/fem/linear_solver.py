@@ -67,7 +67,7 @@ class PardisoSolver:
     # iparm Parameter").
     _PARAMETERS: ClassVar[dict[int, int]] = {
         0: 1,  # the values below, not the defaults
-        1: 2,  # nested dissection (METIS), the quicker in factorisation here
+        1: 2,  # nested dissection (METIS)
         7: 0,  # refine only where pivots were perturbed
         9: 8,  # perturb pivots below 1e-8: the default of symmetric indefinite matrices
         10: 1,  # scaling and

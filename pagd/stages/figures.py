@@ -29,14 +29,16 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     out
         Folder of the stage.
     config
-        Completed configuration; uses ``figures``.
+        Completed configuration; uses ``figures.resolution_dpi``.
     """
     upstream = list(load_records(design).values())
     if not upstream:
         raise InputError(f"{design}: holds no folder of a stage with a record.json.")
 
+    resolution = config["figures"]["resolution_dpi"]
+
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
-        set_resolution(config["figures"]["resolution_dpi"])
+        set_resolution(resolution)
         for name, draw in _drawable(design).items():
             with meter.part(name):
                 draw(design, folder / f"{name}.png")
@@ -47,7 +49,7 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
         out,
         work,
         design_id=upstream[-1].design_id,
-        configuration={"figures": config["figures"]},
+        configuration={"figures": {"resolution_dpi": resolution}},
         upstream=upstream,
         goes_on=True,
         libraries=("matplotlib", "pyvista"),
