@@ -21,8 +21,6 @@ from pagd.repair import repair
 from pagd.sections import place_sections, stations_of
 
 ROOT = Path(__file__).parents[2]
-#: gmsh's numbers of its volume meshers.
-DELAUNAY, HXT = 1, 10
 
 _MATERIALS = ROOT / "config" / "materials.yaml"
 
@@ -41,7 +39,7 @@ def default_paper() -> Sheet:
 
 
 @lru_cache(maxsize=8)
-def mesh_of(name: str, size: float, half: bool = False, algorithm: int = HXT) -> Mesh:
+def mesh_of(name: str, size: float, half: bool = False) -> Mesh:
     """Mesh of a design of Table 2 with elements of a size (mm), or of its half y ≥ 0."""
     with tempfile.TemporaryDirectory() as folder:
         parts = []
@@ -50,7 +48,7 @@ def mesh_of(name: str, size: float, half: bool = False, algorithm: int = HXT) ->
             render(design(name), GeometryRules(), part, drawn, half=half)
             repair(drawn, repaired)
             parts.append(repaired)
-        return GmshMesher(algorithm_3d=algorithm)(SurfacePair.from_stl(*parts, half), size)
+        return GmshMesher()(SurfacePair.from_stl(*parts, half), size)
 
 
 def mirrored(mesh: Mesh) -> Mesh:
