@@ -5,3 +5,9 @@ unknowns. :class:`~pagd.fem.assembly.Assembly` adds them up,
 :class:`~pagd.fem.newton.Newton` finds equilibrium at a load and
 :class:`~pagd.fem.continuation.Continuation` follows it as the load rises.
 """
+
+import os
+
+# Left to itself Numba tries TBB first, and warns where it finds one that is too old. It reads the
+# environment when it is first imported, which the modules of this package do.
+os.environ.setdefault("NUMBA_THREADING_LAYER_PRIORITY", "omp workqueue tbb")
