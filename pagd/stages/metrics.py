@@ -167,6 +167,6 @@ def _refuse_still(outcome: Outcome, last: Mapping[str, Any], thresholds: Thresho
     if is_still(bending, twist, thresholds):
         outcome.end(
             Status.no_actuation,
-            f"At {last['pressure_kPa']:g} kPa it bends by {bending:.1f}° and twists by "
-            f"{twist:.1f}°, both less than {thresholds.still_deg:g}°.",
+            f"At {last['pressure_kPa']:g} kPa it bends by {round(bending, 1) + 0.0}° and twists "
+            f"by {round(twist, 1) + 0.0}°, both less than {thresholds.still_deg:g}°.",
         )
