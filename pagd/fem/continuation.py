@@ -30,10 +30,9 @@ class StepControl:
     wanted_correction
         Largest first correction of a node, in mm, that a step is chosen for.
     growth, cut
-        Largest factor from one step to the next, and the smallest; after a try that did not
-        converge the factor lies between ``cut`` and ``retry``.
+        Largest factor from one step to the next, and the smallest.
     retry
-        See above.
+        Largest factor after a try that did not converge.
     order
         Degree of the polynomial.
     """

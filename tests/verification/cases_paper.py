@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from closed_forms import elastica_tip
+from dead_load import DeadLoad
 from figure import Figure
 from solving import FloatArray, Solved, solve
 
@@ -112,36 +113,15 @@ class EndMoment:
         return self.energy(unknowns, load)
 
 
-class EndForce:
+def pull_of_end(points: FloatArray, faces: IntArray, force: float) -> DeadLoad:
     """A dead force along z, spread evenly over the end."""
-
-    name = "force"
-
-    def __init__(self, points: FloatArray, faces: IntArray, force: float) -> None:
-        at, edge = _end_edges(points, faces)
-        ends = np.array(shapes.TRIANGLE_EDGES)[edge]
-        nodes = np.column_stack([faces[at, ends[:, 0]], faces[at, 3 + edge], faces[at, ends[:, 1]]])
-        lengths = np.linalg.norm(points[nodes[:, 2]] - points[nodes[:, 0]], axis=1)
-        # Simpson's weights are exact for the quadratic shape functions.
-        shares = lengths[:, None] / lengths.sum() * np.array([1, 4, 1]) / 6
-        self.dofs = 3 * nodes + 2
-        self._forces = force * shares
-
-    def internal_at_rest(self) -> FloatArray:
-        return NO_INTERNAL
-
-    def advance(self, correction: FloatArray) -> FloatArray:
-        return NO_INTERNAL
-
-    def energy(self, unknowns: FloatArray, load: float) -> float:
-        return float(-load * (self._forces * unknowns[self.dofs]).sum())
-
-    def linearize(
-        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
-    ) -> float:
-        system.residual[:] = -load * self._forces
-        system.tangent[:] = 0
-        return self.energy(unknowns, load)
+    at, edge = _end_edges(points, faces)
+    ends = np.array(shapes.TRIANGLE_EDGES)[edge]
+    nodes = np.column_stack([faces[at, ends[:, 0]], faces[at, 3 + edge], faces[at, ends[:, 1]]])
+    lengths = np.linalg.norm(points[nodes[:, 2]] - points[nodes[:, 0]], axis=1)
+    # Simpson's weights are exact for the quadratic shape functions.
+    shares = lengths[:, None] / lengths.sum() * np.array([1, 4, 1]) / 6
+    return DeadLoad(3 * nodes + 2, force * shares)
 
 
 def bend(points: FloatArray, faces: IntArray, load: EnergyTerm) -> Solved:
@@ -208,7 +188,7 @@ def end_force(size: float, load: float) -> tuple[float, float]:
     """Tip x and z over LENGTH under a dead force P = load · EI / LENGTH²."""
     points, faces = strip(size)
     force = load * PAPER.bending_stiffness * WIDTH / LENGTH**2
-    tip = _tip(points, bend(points, faces, EndForce(points, faces, force)))
+    tip = _tip(points, bend(points, faces, pull_of_end(points, faces, force)))
     return float(tip[0] / LENGTH), float(tip[2] / LENGTH)
 
 

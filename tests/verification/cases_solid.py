@@ -6,13 +6,14 @@ from itertools import pairwise
 
 import numpy as np
 from closed_forms import NEO_HOOKE, YEOH, bending_moment, bent_block
+from dead_load import DeadLoad
 from figure import Figure
 from scipy.spatial.transform import Rotation
 from solving import FloatArray, Solid, elastomer, held, solid_of, solve
 
 from pagd.fem.quadrature import tetrahedron
 from pagd.fem.shapes import tetrahedron_values
-from pagd.fem.term import NO_INTERNAL, ElementSystem, IntArray, node_dofs
+from pagd.fem.term import node_dofs
 from pagd.mesh.primitives import box, sphere_octant
 from pagd.mesh.types import Mesh
 
@@ -211,37 +212,16 @@ def block_bending(element: str = "taylor_hood") -> list[Figure]:
     return figures
 
 
-class EdgeLoad:
-    """A dead force, spread evenly over a face: the potential −load · F · mean displacement."""
-
-    name = "load"
-
-    def __init__(self, mesh: Mesh, surface: str, force: tuple[float, float, float]) -> None:
-        faces = mesh.surfaces[surface]
-        corners = mesh.points[faces[:, :3]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        areas = np.linalg.norm(normals, axis=1)
-        self.dofs: IntArray = node_dofs(faces)
-        # ∫ N dA is zero at the corners of a flat six-node face and a third of it at the others.
-        shares = np.array([0, 0, 0, 1, 1, 1]) / 3
-        parts = areas[:, None, None] / areas.sum() * shares[:, None] * np.array(force)
-        self._forces = parts.reshape(len(faces), -1)
-
-    def internal_at_rest(self) -> FloatArray:
-        return NO_INTERNAL
-
-    def advance(self, correction: FloatArray) -> FloatArray:
-        return NO_INTERNAL
-
-    def energy(self, unknowns: FloatArray, load: float) -> float:
-        return float(-load * (self._forces * unknowns[self.dofs]).sum())
-
-    def linearize(
-        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
-    ) -> float:
-        system.residual[:] = -load * self._forces
-        system.tangent[:] = 0
-        return self.energy(unknowns, load)
+def edge_load(mesh: Mesh, surface: str, force: tuple[float, float, float]) -> DeadLoad:
+    """A dead force, spread evenly over a face."""
+    faces = mesh.surfaces[surface]
+    corners = mesh.points[faces[:, :3]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    # ∫ N dA is zero at the corners of a flat six-node face and a third of it at the others.
+    shares = np.array([0, 0, 0, 1, 1, 1]) / 3
+    parts = areas[:, None, None] / areas.sum() * shares[:, None] * np.array(force)
+    return DeadLoad(node_dofs(faces), parts.reshape(len(faces), -1))
 
 
 def cook(cells: tuple[int, int] = (16, 16), element: str = "taylor_hood") -> float:
@@ -259,7 +239,7 @@ def cook(cells: tuple[int, int] = (16, 16), element: str = "taylor_hood") -> flo
     material = elastomer((80.1938 / 2, 0.0), bulk=400942.0)
     terms = [
         solid_of(membrane, material, element),
-        EdgeLoad(membrane, "x1", (0.0, 0.0, 100 * thickness)),
+        edge_load(membrane, "x1", (0.0, 0.0, 100 * thickness)),
     ]
     fixed = held(membrane, x0="xyz", y0="y", y1="y")
     (solved,) = solve(points, terms, fixed, [1.0], wanted_correction=5.0)
