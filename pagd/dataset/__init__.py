@@ -1,0 +1,1 @@
+"""The data set: designs drawn at random, and around published ones."""
