@@ -1,0 +1,24 @@
+"""Embeddings by their names in the configuration. A new one: a class, and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from pagd.embedding.interface import Embedding
+from pagd.embedding.linear import FullSpace, PrincipalComponents
+from pagd.embedding.tsne import TSNE
+
+__all__ = ["EMBEDDINGS", "make_embedding"]
+
+#: Name to a function that makes the embedding from the section ``embedding`` of a configuration.
+EMBEDDINGS: Final[Mapping[str, Callable[[Mapping[str, Any]], Embedding]]] = {
+    "tsne": lambda given: TSNE(given["perplexity"], given["neighbours"]),
+    "pca": lambda given: PrincipalComponents(given["dimensions"]),
+    "none": lambda given: FullSpace(),
+}
+
+
+def make_embedding(section: Mapping[str, Any]) -> Embedding:
+    """Return the embedding, not fitted, that the section ``embedding`` asks for."""
+    return EMBEDDINGS[section["method"]](section)

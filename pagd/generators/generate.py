@@ -1,0 +1,173 @@
+"""From proposals to designs: valid ones, none twice, none a copy of a training design."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from pagd.dataset.frame import completed, designs_of
+from pagd.design import Design, GeometryRules, Mode, violations
+from pagd.errors import InputError
+from pagd.generators.interface import Generator, Proposal
+
+__all__ = ["Generated", "generate"]
+
+FloatArray = NDArray[np.float64]
+
+_MODES: tuple[Mode, ...] = ("bending", "twisting", "mixed")
+# A generator that gives less than one usable design in so many proposals is given up.
+_HOPELESS = 1000
+_SMALLEST_ROUND = 100
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Generated:
+    """Generated designs.
+
+    designs: table of n designs g0001 … in the order they were drawn.
+    points: (n, d) their places in the reduced space, None where the generator has none.
+    components: (n,) index of the Gaussian each was drawn from, or None.
+    report: how many were proposed, and why others were not taken; share of each mode.
+    """
+
+    designs: pd.DataFrame
+    points: FloatArray | None
+    components: NDArray[np.int64] | None
+    report: dict[str, Any]
+
+
+def generate(
+    generator: Generator,
+    count: int,
+    *,
+    training: pd.DataFrame,
+    rules: GeometryRules | None = None,
+    seed: int = 1,
+    mode: Mode | None = None,
+) -> Generated:
+    """Draw designs until there are ``count`` usable ones.
+
+    Parameters
+    ----------
+    generator
+        A fitted generator.
+    count
+        Number of designs.
+    training
+        Table of the training designs, of which no copy is taken unless the generator's nature is
+        to copy.
+    rules
+        What makes a design valid; the same as in the geometry.
+    seed
+        Of the draw.
+    mode
+        Take designs of this mode only.
+
+    Raises
+    ------
+    InputError
+        If the generator gives (nearly) no usable designs, and why they were refused.
+    """
+    sieve = _Sieve(generator, training, rules or GeometryRules(), mode)
+    rng = np.random.default_rng(seed)
+    while len(sieve.taken) < count:
+        sieve.take(generator.propose(max(count - len(sieve.taken), _SMALLEST_ROUND), rng), count)
+        if len(sieve.taken) * _HOPELESS < sieve.tally["proposed"] - _HOPELESS:
+            raise InputError(_complaint(generator, count, sieve, mode))
+    return sieve.result()
+
+
+@dataclass(slots=True)
+class _Sieve:
+    """Takes what is usable of proposals, and counts the rest by reason."""
+
+    generator: Generator
+    training: pd.DataFrame
+    rules: GeometryRules
+    mode: Mode | None
+    taken: list[Design] = field(default_factory=list)
+    points: list[FloatArray] = field(default_factory=list)
+    components: list[int] = field(default_factory=list)
+    known: set[Design] = field(default_factory=set)
+    seen: set[Design] = field(default_factory=set)
+    tally: Counter[str] = field(default_factory=Counter)
+    broken: Counter[str] = field(default_factory=Counter)
+    corrections: Counter[str] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        if not self.generator.copies_training:
+            self.known = set(designs_of(self.training))
+
+    def take(self, proposal: Proposal, count: int) -> None:
+        """Take what is usable of a proposal, as long as there are fewer than ``count``."""
+        self.corrections.update(proposal.corrections)
+        for i, design in enumerate(designs_of(proposal.parameters)):
+            self.tally["proposed"] += 1
+            reason = self._refusal(design)
+            if reason is not None:
+                self.tally[reason] += 1
+                continue
+            self.seen.add(design)
+            self.taken.append(design)
+            if proposal.points is not None:
+                self.points.append(proposal.points[i])
+            if proposal.components is not None:
+                self.components.append(int(proposal.components[i]))
+            if len(self.taken) == count:
+                return
+
+    def _refusal(self, design: Design) -> str | None:
+        if self.mode not in (None, design.mode):
+            return "other_mode"
+        keys = {violation.key for violation in violations(design, self.rules)}
+        if keys:
+            self.broken.update(keys)
+            return "invalid"
+        if design in self.known:
+            return "copies_of_training"
+        return "duplicates" if design in self.seen else None
+
+    def result(self) -> Generated:
+        """Return what was taken."""
+        ids = (f"g{i:04d}" for i in range(1, len(self.taken) + 1))
+        parameters = pd.DataFrame([design.as_dict() for design in self.taken])
+        designs = completed(parameters, ids, "generated")
+        return Generated(
+            designs=designs,
+            points=np.array(self.points) if self.points else None,
+            components=np.array(self.components, dtype=np.int64) if self.components else None,
+            report=self.report(designs),
+        )
+
+    def report(self, designs: pd.DataFrame) -> dict[str, Any]:
+        """Return the counts of a run, for its record."""
+        reasons = ("invalid", "copies_of_training", "duplicates", "other_mode")
+        modes = designs["mode"].value_counts()
+        return {
+            "designs": len(designs),
+            "proposed": self.tally["proposed"],
+            "refused": {reason: self.tally[reason] for reason in reasons},
+            "refused_by_parameter": dict(sorted(self.broken.items())),
+            "corrections": dict(sorted(self.corrections.items())),
+            "mode_share": {mode: float(modes.get(mode, 0) / len(designs)) for mode in _MODES},
+        }
+
+
+def _complaint(generator: Generator, count: int, sieve: _Sieve, mode: Mode | None) -> str:
+    wanted = f"{mode} designs" if mode else "designs"
+    reasons = {
+        "invalid": "cannot be built",
+        "copies_of_training": "are copies of training designs",
+        "duplicates": "are there already",
+        "other_mode": "have another mode",
+    }
+    why = [f"{sieve.tally[key]} {text}" for key, text in reasons.items() if sieve.tally[key]]
+    return (
+        f"generator.method = {generator.name} must give {count} {wanted}, but gave "
+        f"{len(sieve.taken)} in {sieve.tally['proposed']} proposals: {', '.join(why)}."
+    )
