@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from matplotlib import style
 from matplotlib.colors import LinearSegmentedColormap
@@ -21,14 +21,20 @@ __all__ = [
     "ELASTOMER",
     "FAINT",
     "INK",
+    "MODE_LOOKS",
+    "ORIGIN_COLOURS",
     "PAPER",
     "PRESSURE_MAP",
+    "STATUS_COLOURS",
     "STRAIN_COLOURS",
     "STRAIN_LABEL",
     "STRAIN_MAP",
+    "Look",
     "design_colours",
+    "mode_look",
     "new_figure",
     "number",
+    "origin_colour",
     "save",
     "set_resolution",
 ]
@@ -49,6 +55,42 @@ STRAIN_LABEL = "largest principal logarithmic strain"
 
 # Okabe and Ito's colours, which also readers with a colour deficiency tell apart.
 _CYCLE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+
+
+class Look(NamedTuple):
+    """How the points of one group look; groups differ in shape as well as in colour."""
+
+    colour: str
+    marker: str
+
+
+# Four of Okabe and Ito's colours, which also differ in lightness, each with a shape of its own.
+MODE_LOOKS: Final = {
+    "bending": Look("#0072b2", "o"),
+    "twisting": Look("#d55e00", "^"),
+    "mixed": Look("#009e73", "D"),
+}
+_OTHER_MODE = Look("#8a94a0", "X")
+
+ORIGIN_COLOURS: Final = {
+    "random": "#b9c2cb",
+    "published": "#1d2733",
+    "table2": "#cc79a7",
+    "generated": "#56b4e9",
+}
+_OTHER_ORIGIN = "#e69f00"
+
+# What went well stays quiet; every way to fail has its colour, from early stages (dark) to late.
+STATUS_COLOURS: Final = {
+    "ok": "#cfd8e0",
+    "no_actuation": "#f0e442",
+    "bending_limit": "#56b4e9",
+    "self_collision": "#e69f00",
+    "overstretched": "#d55e00",
+    "not_converged": "#cc79a7",
+    "mesh_failed": "#6b4c9a",
+    "invalid_geometry": "#1d2733",
+}
 
 _LOOK: dict[str, Any] = {
     "font.family": "DejaVu Sans",
@@ -100,6 +142,16 @@ def save(figure: Figure, out: Path) -> None:
 def design_colours(names: Sequence[str]) -> dict[str, str]:
     """Return a colour a design, in their order."""
     return {name: _CYCLE[i % len(_CYCLE)] for i, name in enumerate(names)}
+
+
+def mode_look(mode: str) -> Look:
+    """Return colour and marker of a mode; a mode without any of its own gets a grey cross."""
+    return MODE_LOOKS.get(mode, _OTHER_MODE)
+
+
+def origin_colour(origin: str) -> str:
+    """Return the colour of an origin; one that has none of its own gets orange."""
+    return ORIGIN_COLOURS.get(origin, _OTHER_ORIGIN)
 
 
 def number(value: float, digits: int) -> str:
