@@ -16,8 +16,10 @@ from pagd.validation import check, defaults, schema
 
 __all__ = [
     "SECTIONS",
+    "check_study",
     "checked",
     "completed",
+    "known_tables",
     "load",
     "material_as_json",
     "material_file",
@@ -33,6 +35,11 @@ SECTIONS = {
     "solve": ("solve",),
     "metrics": ("metrics",),
     "figures": ("figures",),
+    "dataset": ("channel", "limits", "dataset"),
+    "embedding": ("embedding",),
+    "generate": ("channel", "limits", "generator"),
+    "diversity": ("channel", "limits", "generator", "diversity"),
+    "selection": ("selection",),
 }
 
 Config = dict[str, Any]
@@ -70,6 +77,42 @@ def _check_steps(solve: Mapping[str, float], where: str) -> None:
         )
 
 
+def check_study(config: Mapping[str, Any], where: str) -> None:
+    """Check what the sections of the generative half ask of each other.
+
+    The stages check the same of the tables they are given, which may be anybody's.
+
+    Parameters
+    ----------
+    config
+        Completed configuration.
+    where
+        What the faults are found in, for the message.
+
+    Raises
+    ------
+    InputError
+        Naming the keys and the rule of the first fault.
+    """
+    size, generated = config["dataset"]["size"], config["generator"]["designs"]
+    plane = config["diversity"]["plane_designs"]
+    limits = {
+        ("diversity", "plane_designs"): {"dataset.size": size},
+        ("diversity", "hull_designs"): {"dataset.size": size, "generator.designs": generated},
+        ("embedding", "perplexity"): {
+            "a third of dataset.size": size / 3,
+            "a third of diversity.plane_designs": plane / 3,
+        },
+    }
+    for (section, key), bounds in limits.items():
+        value = config[section][key]
+        for name, bound in bounds.items():
+            if value > bound:
+                raise InputError(
+                    f"{where}: {section}.{key} = {value:g} must be at most {name} = {bound:g}."
+                )
+
+
 def completed(given: Mapping[str, Any]) -> Config:
     """Return the configuration with the default for every key that ``given`` lacks."""
     config: Config = copy.deepcopy(defaults(schema("config")))
@@ -92,10 +135,22 @@ def part_as_json(config: Mapping[str, Any], stage: str) -> str:
 
 def material_file(config: Mapping[str, Any]) -> Path:
     """Return the file of materials; pagd's own where the default one is not there."""
-    file = Path(config["material_file"])
-    if file.is_file() or file != Path(completed({})["material_file"]):
+    return _found(config["material_file"], completed({})["material_file"])
+
+
+def known_tables(config: Mapping[str, Any]) -> dict[str, str]:
+    """Return the tables of known designs by origin; pagd's own where a default is not there."""
+    default = completed({})["dataset"]["known"]
+    known = config["dataset"]["known"]
+    return {origin: str(_found(path, default.get(origin))) for origin, path in known.items()}
+
+
+def _found(path: str, default: str | None) -> Path:
+    """Return the path, or pagd's own copy if it is the default one and there is no such file."""
+    file = Path(path)
+    if file.is_file() or path != default:
         return file
-    return Path(str(importlib.resources.files("pagd") / "data" / "materials.yaml"))
+    return Path(str(importlib.resources.files("pagd") / "data" / file.name))
 
 
 def material_as_json(file: str, name: str, use: Use) -> str:

@@ -7,12 +7,18 @@ leaves a folder too, with the reason in the record; the stages after it pass tha
 #: Version of each stage's meaning. Raise it when a change of the library changes what the stage
 #: makes of the same inputs: the workflow then runs it again, and what follows from it.
 STAGE_VERSIONS = {
+    "dataset": 1,
+    "embedding": 1,
+    "generate": 1,
+    "diversity": 1,
+    "selection": 1,
     "geometry": 1,
     "repair": 1,
     "mesh": 1,
     "solve": 2,
     "metrics": 1,
     "figures": 1,
-    "summary": 1,
-    "report": 1,
+    "generative_figures": 1,
+    "summary": 2,
+    "report": 2,
 }

@@ -12,7 +12,10 @@ from pagd.errors import StageFailure, Status
 from pagd.record import Meter, Record, stage_folder, versions, write_record
 from pagd.stages import STAGE_VERSIONS
 
-__all__ = ["Outcome", "Work", "run_stage"]
+__all__ = ["ALL_DESIGNS", "Outcome", "Work", "run_stage"]
+
+#: The design_id in the record of a stage that works on all designs at once.
+ALL_DESIGNS = "all"
 
 log = logging.getLogger(__name__)
 

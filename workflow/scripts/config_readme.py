@@ -40,12 +40,15 @@ def rows(schema: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str, s
     for name, part in schema["properties"].items():
         key = f"{prefix}{name}"
         if "properties" in part:
-            yield (f"**`{key}`**", "", "", "", part["description"])
+            yield (f"**`{key}`**", _default(part), "", "", part["description"])
             yield from rows(part, f"{key}.")
         else:
-            default = _value(part["default"]) if "default" in part else ""
             unit = part["unit"] if part["unit"] not in ("", "1") else "–"
-            yield (f"`{key}`", default, unit, _rule(part), part["description"])
+            yield (f"`{key}`", _default(part), unit, _rule(part), part["description"])
+
+
+def _default(part: dict[str, Any]) -> str:
+    return _value(part["default"]) if "default" in part else ""
 
 
 def _value(value: Any) -> str:
@@ -57,7 +60,8 @@ def _rule(part: dict[str, Any]) -> str:
     if "enum" in part:
         return ", ".join(_value(value) for value in part["enum"])
     bounds = [f"{sign} {part[word]}" for word, sign in _SIGNS.items() if word in part]
-    return ", ".join([_KINDS[part["type"]], *bounds])
+    kinds = part["type"] if isinstance(part["type"], list) else [part["type"]]
+    return ", ".join([" or ".join(_KINDS[kind] for kind in kinds), *bounds])
 
 
 _KINDS = {
@@ -66,6 +70,7 @@ _KINDS = {
     "boolean": "true, false",
     "string": "text",
     "array": "list",
+    "null": "null",
 }
 _SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 

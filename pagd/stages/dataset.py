@@ -1,0 +1,79 @@
+"""The training designs: random ones, and some around known ones."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from pagd.catalogue import NamedDesign, read_designs
+from pagd.config import known_tables, part
+from pagd.dataset import make_dataset, read_frame, write_frame
+from pagd.record import Meter, Record
+from pagd.stages.geometry import rules_of
+from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
+
+__all__ = ["DESIGNS_NAME", "digest_of", "load_dataset", "run"]
+
+DESIGNS_NAME = "designs.parquet"
+
+
+def run(out: Path, config: Mapping[str, Any]) -> Record:
+    """Make the data set: designs.parquet, the same bytes for the same configuration.
+
+    Parameters
+    ----------
+    out
+        Folder of the stage.
+    config
+        Completed configuration; uses ``channel``, ``limits`` and ``dataset``.
+    """
+    settings = dict(config["dataset"])
+    settings.pop("known")
+    known = _known(config)
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        with meter.part("draw"):
+            made = make_dataset(published=known, rules=rules_of(config), **settings)
+        write_frame(folder / DESIGNS_NAME, made.designs)
+        outcome.figures |= made.report | {"sha256": _digest(folder / DESIGNS_NAME)}
+
+    return run_stage(
+        "dataset",
+        out,
+        work,
+        design_id=ALL_DESIGNS,
+        configuration=part(config, "dataset"),
+        libraries=("numpy", "pandas", "pyarrow", "scipy"),
+    )
+
+
+def load_dataset(dataset: Path) -> pd.DataFrame:
+    """Read the training designs from the folder of this stage, or from a Parquet file.
+
+    Raises
+    ------
+    InputError
+        If there is no such table.
+    """
+    return read_frame(_file(dataset))
+
+
+def digest_of(dataset: Path) -> str:
+    """Return what tells one data set from another: a digest of its file."""
+    return _digest(_file(dataset))
+
+
+def _known(config: Mapping[str, Any]) -> list[NamedDesign]:
+    return list(read_designs(known_tables(config)).values())
+
+
+def _file(dataset: Path) -> Path:
+    return dataset if dataset.suffix == ".parquet" else dataset / DESIGNS_NAME
+
+
+def _digest(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()[:16]
