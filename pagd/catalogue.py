@@ -1,4 +1,4 @@
-"""Designs with names: from a table (CSV), a file of one's own (YAML, JSON) or JSON text."""
+"""Designs with names: from a table (CSV, Parquet), a file (YAML, JSON) or JSON text."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from pagd.design import PARAMETERS, Design
 from pagd.design.model import as_number
 from pagd.documents import read_document
 from pagd.errors import InputError
+from pagd.tables import GENERATED, read_rows
 from pagd.validation import check, check_each
 
 __all__ = ["NamedDesign", "design_from", "read_designs"]
@@ -56,12 +57,14 @@ def design_from(source: str) -> NamedDesign:
 
 
 def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str, NamedDesign]:
-    """Read tables of designs: CSV with a column ``name`` and one a parameter.
+    """Read tables of designs: a column ``name``, one a parameter, and if wanted origin and source.
 
     Parameters
     ----------
     tables
-        Origin of the designs to the table's path.
+        Origin of the designs to the table's path: CSV, or Parquet as pagd itself writes it, with
+        ``design_id`` for the name. What Parquet has of columns that follow from the parameters,
+        or were measured on generated designs, is not read.
     checked
         False leaves out the check against the schema, for tables that have passed it.
 
@@ -83,13 +86,29 @@ def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str
 
 def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
     """Return the rows of a table, each with the place where it stands."""
+    if path.suffix == ".parquet":
+        first, rows = 1, [_named(row) for row in read_rows(path)]
+    else:
+        first, rows = 2, _rows_of_csv(path)  # row 1 of the file is the heading
+    return [(f"{path}, row {i}", _typed(row, origin)) for i, row in enumerate(rows, start=first)]
+
+
+def _rows_of_csv(path: Path) -> list[dict[str, Any]]:
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file, restkey="(no heading)", strict=True))
+            return list(csv.DictReader(file, restkey="(no heading)", strict=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"table of designs {path}: cannot be read ({error}).") from None
-    # Row 1 of the file is the heading.
-    return [(f"{path}, row {i}", _typed(row, origin)) for i, row in enumerate(rows, start=2)]
+
+
+def _named(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row of a Parquet table as a row of CSV would be."""
+    own = {key: value for key, value in row.items() if key not in _NOT_READ}
+    return {"name": row.get("design_id"), **own}
+
+
+# A design is its independent parameters: the rest is computed anew, and cannot contradict them.
+_NOT_READ = {column.name for column in GENERATED} - {*PARAMETERS, "origin"}
 
 
 def _typed(row: Mapping[str, Any], origin: str) -> dict[str, Any]:
