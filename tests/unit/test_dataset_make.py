@@ -200,7 +200,6 @@ def test_the_rules_are_those_given() -> None:
         ({"interpolated_share": float("nan")}, r"dataset\.interpolated_share = nan must lie"),
         ({"sampling": "halton"}, r"dataset\.sampling = 'halton' must be one of random, sobol"),
         ({"size": 6}, r"dataset\.size .* room for 3 bending designs, .* at least the 4"),
-        ({"rules": GeometryRules(limits=Limits(cavity=90.0))}, "Hardly any bending design"),
     ],
 )
 def test_what_cannot_be_is_refused(given: dict[str, Any], words: str) -> None:
