@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from pagd.figures.groups import FEW, by_mode, read_entries
 from pagd.figures.load import Path3D
+from pagd.figures.paths_by_mode import angles_by_mode, members_of
 from pagd.figures.style import design_colours, new_figure, number, save
 from pagd.figures.trajectories import load_all
 
@@ -21,14 +23,18 @@ __all__ = ["angles_figure", "draw_angles"]
 
 
 def draw_angles(design_folders: Sequence[Path], out: Path) -> None:
-    """Draw the angles of the designs that have a trajectory to a PNG file.
+    """Draw the angles of the designs that have a trajectory to a PNG file, by mode if many.
 
     Raises
     ------
     InputError
         If none has.
     """
-    save(angles_figure(load_all(design_folders)), out)
+    paths = load_all(design_folders)
+    if len(paths) <= FEW:
+        save(angles_figure(paths), out)
+    else:
+        save(angles_by_mode(members_of(by_mode(read_entries(design_folders)), paths)), out)
 
 
 def angles_figure(paths: Mapping[str, Path3D]) -> Figure:

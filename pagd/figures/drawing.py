@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pagd.errors import InputError
 from pagd.figures.deformed import VIEW
+from pagd.figures.groups import read_entries
 from pagd.figures.load import States, has_states, load_states
 from pagd.figures.style import FAINT, STRAIN_MAP
 from pagd.figures.surface import skin_of
@@ -30,14 +31,16 @@ _MARGIN, _CAPTION = 6.0, 9.0
 
 
 def draw_side_by_side(design_folders: Sequence[Path], out: Path) -> None:
-    """Draw every solved design at its highest pressure to one SVG file, on one scale.
+    """Draw solved designs at their highest pressure to one SVG file, on one scale.
 
-    Colours are the strain, as in the other pictures. Raises ``InputError`` if no design was
-    solved.
+    Those of Table 2 if there are any, or all. Colours are the strain, as in the other pictures.
+    Raises ``InputError`` if no design was solved.
     """
-    solved = {f.name: load_states(f) for f in design_folders if has_states(f)}
-    if not solved:
+    entries = [entry for entry in read_entries(design_folders) if has_states(entry.folder)]
+    if not entries:
         raise InputError("None of the designs has deformed states to draw.")
+    examples = [entry for entry in entries if entry.origin == "table2"] or entries
+    solved = {entry.name: load_states(entry.folder) for entry in examples}
     top = max(float(np.percentile(states.strain[-1], 99.0)) for states in solved.values())
     panels = [_triangles(states, top) for states in solved.values()]
     captions = [f"{name}, {states.pressure_kPa[-1]:g} kPa" for name, states in solved.items()]

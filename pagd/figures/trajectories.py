@@ -10,7 +10,9 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from pagd.errors import InputError
+from pagd.figures.groups import FEW, by_mode, read_entries
 from pagd.figures.load import Path3D, has_trajectory, load_trajectory
+from pagd.figures.paths_by_mode import members_of, trajectories_by_mode
 from pagd.figures.style import FAINT, INK, PRESSURE_MAP, design_colours, new_figure, save
 
 if TYPE_CHECKING:
@@ -26,14 +28,18 @@ _SHORTEST = 0.3
 
 
 def draw_trajectories(design_folders: Sequence[Path], out: Path) -> None:
-    """Draw the trajectories of the designs that have one to a PNG file.
+    """Draw the trajectories of the designs that have one to a PNG file, by mode if many.
 
     Raises
     ------
     InputError
         If none has.
     """
-    save(trajectories_figure(load_all(design_folders)), out)
+    paths = load_all(design_folders)
+    if len(paths) <= FEW:
+        save(trajectories_figure(paths), out)
+    else:
+        save(trajectories_by_mode(members_of(by_mode(read_entries(design_folders)), paths)), out)
 
 
 def load_all(design_folders: Sequence[Path]) -> dict[str, Path3D]:
