@@ -114,6 +114,7 @@ def make_dataset(
         Naming key, value and rule of what cannot be, or if the rules leave nothing to draw.
     """
     _check_numbers(size, jitter, seed)
+    size, seed = int(size), int(seed)
     _check_shares(twisting_share, augmented_share, interpolated_share)
     if sampling not in METHODS:
         raise InputError(f"dataset.sampling = {sampling!r} must be one of {', '.join(METHODS)}.")
@@ -133,9 +134,10 @@ def make_dataset(
     return Dataset(frame, report | {"counts": _counts(frame)})
 
 
-def _check_numbers(size: int, jitter: float, seed: int) -> None:
+def _check_numbers(size: float, jitter: float, seed: float) -> None:
     for key, number, least in (("size", size, 1), ("seed", seed, 0)):
-        if not isinstance(number, int | np.integer) or number < least:
+        # YAML and JSON may spell a whole number 1e4.
+        if not float(number).is_integer() or number < least:
             raise InputError(
                 f"dataset.{key} = {number!r} must be a whole number of at least {least}."
             )
@@ -223,7 +225,7 @@ def _drawn(
     seed: int,
 ) -> dict[tuple[Category, str], Sampled]:
     """Draw every part of every category that has any design, each of a stream of its own."""
-    sequences = np.random.SeedSequence(int(seed)).spawn(len(plans) * len(PARTS))
+    sequences = np.random.SeedSequence(seed).spawn(len(plans) * len(PARTS))
     taken = {named.design for named in known}
     parts: dict[tuple[Category, str], Sampled] = {}
     for (plan, part), sequence in zip(product(plans, PARTS), sequences, strict=True):

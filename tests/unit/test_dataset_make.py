@@ -208,6 +208,12 @@ def test_what_cannot_be_is_refused(given: dict[str, Any], words: str) -> None:
         make_dataset(**arguments)
 
 
+def test_whole_numbers_may_come_as_floats() -> None:
+    size: Any = 1e2
+    report = make_dataset(size, seed=2).report
+    assert json.dumps([report["size"], report["seed"]]) == "[100, 2]"
+
+
 def test_a_generated_table_serves_as_known_designs(tmp_path: Path) -> None:
     write_frame(tmp_path / "d.parquet", make_dataset(20, seed=3).designs)
     known: list[NamedDesign] = list(read_designs({"own": str(tmp_path / "d.parquet")}).values())
