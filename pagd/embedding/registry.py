@@ -11,14 +11,15 @@ from pagd.embedding.tsne import TSNE
 
 __all__ = ["EMBEDDINGS", "make_embedding"]
 
-#: Name to a function that makes the embedding from the section ``embedding`` of a configuration.
-EMBEDDINGS: Final[Mapping[str, Callable[[Mapping[str, Any]], Embedding]]] = {
-    "tsne": lambda given: TSNE(given["perplexity"], given["neighbours"]),
-    "pca": lambda given: PrincipalComponents(given["dimensions"]),
-    "none": lambda given: FullSpace(),
+#: Name to a function that makes the embedding from the section ``embedding`` of a configuration
+#: and the number of threads (−1: all cores).
+EMBEDDINGS: Final[Mapping[str, Callable[[Mapping[str, Any], int], Embedding]]] = {
+    "tsne": lambda given, threads: TSNE(given["perplexity"], given["neighbours"], threads),
+    "pca": lambda given, threads: PrincipalComponents(given["dimensions"]),
+    "none": lambda given, threads: FullSpace(),
 }
 
 
-def make_embedding(section: Mapping[str, Any]) -> Embedding:
+def make_embedding(section: Mapping[str, Any], threads: int = -1) -> Embedding:
     """Return the embedding, not fitted, that the section ``embedding`` asks for."""
-    return EMBEDDINGS[section["method"]](section)
+    return EMBEDDINGS[section["method"]](section, threads)

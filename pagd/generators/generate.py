@@ -20,8 +20,8 @@ __all__ = ["Generated", "generate"]
 FloatArray = NDArray[np.float64]
 
 _MODES: tuple[Mode, ...] = ("bending", "twisting", "mixed")
-# A generator that gives less than one usable design in so many proposals is given up.
-_HOPELESS = 1000
+# A generator that gives no usable design in so many proposals on end is given up.
+_HOPELESS = 10_000
 _SMALLEST_ROUND = 100
 
 
@@ -77,7 +77,7 @@ def generate(
     rng = np.random.default_rng(seed)
     while len(sieve.taken) < count:
         sieve.take(generator.propose(max(count - len(sieve.taken), _SMALLEST_ROUND), rng), count)
-        if len(sieve.taken) * _HOPELESS < sieve.tally["proposed"] - _HOPELESS:
+        if sieve.in_vain >= _HOPELESS:
             raise InputError(_complaint(generator, count, sieve, mode))
     return sieve.result()
 
@@ -96,6 +96,7 @@ class _Sieve:
     known: set[Design] = field(default_factory=set)
     seen: set[Design] = field(default_factory=set)
     tally: Counter[str] = field(default_factory=Counter)
+    in_vain: int = 0
     broken: Counter[str] = field(default_factory=Counter)
     corrections: Counter[str] = field(default_factory=Counter)
 
@@ -111,7 +112,9 @@ class _Sieve:
             reason = self._refusal(design)
             if reason is not None:
                 self.tally[reason] += 1
+                self.in_vain += 1
                 continue
+            self.in_vain = 0
             self.seen.add(design)
             self.taken.append(design)
             if proposal.points is not None:

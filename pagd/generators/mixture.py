@@ -90,7 +90,9 @@ def fit_mixture(
     if bridge_share == 0 or components < 2 or slanted.all() or not slanted.any():
         return _em(points, components, seed)
     islands = _em(points, components - 1, seed)
-    mean, covariance = barycentre(_moments(points[~slanted]), _moments(points[slanted]))
+    floor = _floor(points)
+    straight, helical = (_moments(points[kind], floor) for kind in (~slanted, slanted))
+    mean, covariance = barycentre(straight, helical)
     return Mixture(
         weights=np.append((1 - bridge_share) * islands.weights, bridge_share),
         means=np.vstack([islands.means, mean]),
@@ -126,21 +128,26 @@ def _em(points: FloatArray, components: int, seed: int) -> Mixture:
 
 
 def _fitted(points: FloatArray, components: int, seed: int) -> GaussianMixture:
-    # A direction without any spread, such as alpha within a category, would make EM fail.
-    floor = 1e-6 * max(float(points.var(axis=0).mean()), 1e-12)
+    floor = _floor(points)
     method = GaussianMixture(components, n_init=_STARTS, reg_covar=floor, random_state=seed)
     return method.fit(points)
 
 
-def _moments(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return points.mean(axis=0), np.atleast_2d(np.cov(points, rowvar=False, bias=True))
+def _moments(points: FloatArray, floor: float) -> tuple[FloatArray, FloatArray]:
+    covariance = np.atleast_2d(np.cov(points, rowvar=False, bias=True))
+    return points.mean(axis=0), covariance + floor * np.eye(len(covariance))
+
+
+def _floor(points: FloatArray) -> float:
+    """Variance added in every direction: alpha, for one, has none within a category."""
+    return 1e-6 * max(float(points.var(axis=0).mean()), 1e-12)
 
 
 def _transport(first: FloatArray, second: FloatArray) -> FloatArray:
     """Matrix A of the optimal transport of N(0, first) to N(0, second)."""
     root = _root(first)
-    inverse = np.linalg.pinv(root, hermitian=True)
-    return inverse @ _root(root @ second @ root) @ inverse
+    inverse = np.linalg.inv(root)
+    return np.asarray(inverse @ _root(root @ second @ root) @ inverse)
 
 
 def _root(matrix: FloatArray) -> FloatArray:

@@ -1,0 +1,164 @@
+"""One contract for all generators, and what is special to each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from design_samples import plane, training
+
+from pagd.dataset.frame import DEPENDENT, INDEPENDENT, designs_of
+from pagd.design import GeometryRules, Limits, violations
+from pagd.errors import InputError
+from pagd.generators import GENERATORS, Generated, Generator, generate, make_generator
+
+SECTION = {"components": 3, "largest_components": 4, "bridge_share": 1 / 3, "bandwidth": None}
+RULES = GeometryRules()
+COUNT = 120
+
+
+def made(method: str, **changes: object) -> Generator:
+    return make_generator(SECTION | {"method": method} | changes, RULES).fit(plane(), seed=1)
+
+
+def drawn(generator: Generator, seed: int = 1, **options: object) -> Generated:
+    return generate(generator, COUNT, training=training(), rules=RULES, seed=seed, **options)
+
+
+@pytest.fixture(scope="module", params=GENERATORS)
+def generator(request: pytest.FixtureRequest) -> Generator:
+    return made(request.param)
+
+
+@pytest.fixture(scope="module")
+def generated(generator: Generator) -> Generated:
+    return drawn(generator)
+
+
+def test_as_many_designs_as_asked_for(generated: Generated, generator: Generator) -> None:
+    assert len(generated.designs) == generated.report["designs"] == COUNT
+    assert generated.designs["design_id"].is_unique
+    assert set(generated.designs["origin"]) == {"generated"}
+    assert generator.name in GENERATORS
+
+
+def test_all_are_valid_and_none_is_there_twice(generated: Generated) -> None:
+    designs = designs_of(generated.designs)
+    assert len(set(designs)) == COUNT
+    assert not any(violations(design, RULES) for design in designs)
+
+
+def test_none_is_a_copy_of_a_training_design(generated: Generated, generator: Generator) -> None:
+    copies = set(designs_of(generated.designs)) & set(designs_of(training()))
+    assert len(copies) == (COUNT if generator.copies_training else 0)
+
+
+def test_dependent_parameters_follow_from_the_others(generated: Generated) -> None:
+    for design, (_, row) in zip(
+        designs_of(generated.designs), generated.designs.iterrows(), strict=True
+    ):
+        assert tuple(row[list(DEPENDENT)]) == (design.L_T, design.N1, design.N2)
+        assert row["mode"] == design.mode
+
+
+def test_the_same_seed_gives_the_same_designs(generator: Generator, generated: Generated) -> None:
+    pd.testing.assert_frame_equal(drawn(generator).designs, generated.designs)
+    other = drawn(generator, seed=2)
+    assert designs_of(other.designs) != designs_of(generated.designs)
+
+
+def test_places_and_gaussians_belong_to_the_designs(
+    generated: Generated, generator: Generator
+) -> None:
+    if generated.components is not None:
+        assert set(generated.components) <= {0, 1, 2}
+        assert len(generated.components) == COUNT
+    if generated.points is not None:
+        assert generated.points.shape == (COUNT, 2)
+        decoded = plane().decode(generated.points).parameters
+        assert designs_of(decoded) == designs_of(generated.designs)
+
+
+def test_the_report_adds_up(generated: Generated) -> None:
+    report = generated.report
+    assert report["proposed"] == COUNT + sum(report["refused"].values())
+    assert sum(report["mode_share"].values()) == pytest.approx(1)
+    shares = generated.designs["mode"].value_counts(normalize=True)
+    assert report["mode_share"]["twisting"] == pytest.approx(shares["twisting"])
+
+
+def test_invalid_proposals_are_refused_and_counted(generator: Generator) -> None:
+    rules = GeometryRules(limits=Limits(thickness=1.5))
+    found = generate(generator, 40, training=training(), rules=rules, seed=1)
+    assert min(found.designs[["t", "t_h", "t_ab", "t_b"]].min()) >= 1.5
+    if generator.name != "random":  # which draws valid ones only
+        assert found.report["refused"]["invalid"] > 0
+        assert set(found.report["refused_by_parameter"]) <= {
+            "t",
+            "t_h",
+            "t_ab",
+            "t_b",
+            "channel.roof",
+        }
+
+
+def test_a_mode_can_be_asked_for(generator: Generator) -> None:
+    found = drawn(generator, mode="twisting")
+    assert set(found.designs["mode"]) == {"twisting"}
+    assert found.report["refused"]["other_mode"] > 0
+
+
+@pytest.mark.parametrize("method", ["gmm", "gmm_full"])
+def test_the_bridge_gives_the_mixed_mode(method: str) -> None:
+    share = drawn(made(method)).report["mode_share"]
+    assert share["mixed"] >= 0.1
+    assert min(share.values()) >= 0.1
+
+
+def test_mixed_designs_come_from_the_bridge() -> None:
+    generator = made("gmm")
+    found = drawn(generator)
+    mixed = (found.designs["mode"] == "mixed").to_numpy()
+    assert found.components is not None
+    # The rest comes from the shores of the two islands.
+    assert np.mean(found.components[mixed] == 2) > 0.5
+    assert np.mean(found.components[~mixed] == 2) < 0.3
+    assert found.designs.loc[mixed, "alpha"].nunique() > 5
+
+
+@pytest.mark.parametrize("method", ["random", "resample"])
+def test_baselines_have_the_two_modes_of_the_data_set(method: str) -> None:
+    assert drawn(made(method)).report["mode_share"]["mixed"] == 0
+
+
+def test_what_cannot_be_had_is_told_in_one_sentence() -> None:
+    with pytest.raises(InputError, match=r"^generator.method = resample must give 120 mixed des"):
+        drawn(made("resample"), mode="mixed")
+
+
+def test_more_copies_than_there_are_is_told() -> None:
+    with pytest.raises(InputError, match=r"but gave 240 in .* are there already\.$"):
+        generate(made("resample"), 241, training=training(), rules=RULES)
+
+
+def test_random_designs_lie_in_the_sampling_box() -> None:
+    from pagd.design import PARAMETERS
+
+    designs = drawn(made("random")).designs
+    for symbol in INDEPENDENT[:9]:
+        assert designs[symbol].between(PARAMETERS[symbol].low, PARAMETERS[symbol].high).all()
+
+
+def test_the_number_of_gaussians_by_criterion() -> None:
+    generator = made("gmm", components="bic")
+    best = min(generator.bic, key=generator.bic.get)
+    assert len(generator.mixture.weights) == best + 1
+    assert list(generator.bic) == [1, 2, 3, 4]
+
+
+def test_a_wider_kernel_strays_farther() -> None:
+    from scipy.spatial import KDTree
+
+    tree = KDTree(plane().points)
+    near, far = (tree.query(drawn(made("kde", bandwidth=h)).points)[0].mean() for h in (0.1, 2.0))
+    assert far > 3 * near
