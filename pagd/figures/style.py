@@ -74,11 +74,13 @@ _OTHER_MODE = Look("#8a94a0", "X")
 
 ORIGIN_COLOURS: Final = {
     "random": "#b9c2cb",
+    "jitter": "#e69f00",
+    "interpolation": "#0072b2",
     "published": "#1d2733",
     "table2": "#cc79a7",
     "generated": "#56b4e9",
 }
-_OTHER_ORIGIN = "#e69f00"
+_OTHER_ORIGIN = "#009e73"
 
 # What went well stays quiet; every way to fail has its colour, from early stages (dark) to late.
 STATUS_COLOURS: Final = {
@@ -105,6 +107,7 @@ _LOOK: dict[str, Any] = {
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
     "axes.grid": True,
+    "axes.axisbelow": True,
     "grid.color": "#e3e7eb",
     "grid.linewidth": 0.7,
     "xtick.color": FAINT,
@@ -150,7 +153,7 @@ def mode_look(mode: str) -> Look:
 
 
 def origin_colour(origin: str) -> str:
-    """Return the colour of an origin; one that has none of its own gets orange."""
+    """Return the colour of an origin; one that has none of its own gets green."""
     return ORIGIN_COLOURS.get(origin, _OTHER_ORIGIN)
 
 

@@ -1,0 +1,188 @@
+"""What is written under the pictures: how each was computed, with the numbers of the run.
+
+A caption is a row of sentences with places for facts; a sentence with a fact that a run does not
+know is left out, so that no caption ever says what was not done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from string import Formatter
+from typing import Any, Final
+
+import pandas as pd
+
+from pagd.figures.generative.results import (
+    GenerativePaths,
+    figures_of,
+    load_mixture,
+    settings_of,
+    table_or_none,
+)
+from pagd.figures.style import number
+
+__all__ = ["CAPTIONS", "caption", "captions", "facts_of", "facts_of_settings"]
+
+#: Name of the picture to the sentences below it, in the order of the page.
+CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
+    "embedding": (
+        "The training designs in the reduced space (Fig. 4a of the paper): each has its 14"
+        " numbers standardised and its categories one-hot.",
+        "Method: {embedding}.",
+        "Perplexity {perplexity}.",
+        "Left: a seeded choice of up to 1,000, by category; right: all {trained}, by where they"
+        " come from, with published actuators as stars.",
+        "In a t-SNE plane neighbours matter, distances between islands do not.",
+        "Trustworthiness {trustworthiness} (1: all neighbours are kept).",
+        "Seed {embedding_seed}.",
+    ),
+    "mixture": (
+        "Generated designs in the reduced space, by the mode of the decoded design (Fig. 4b of"
+        " the paper), over the training designs in grey.",
+        "Ellipses: {gaussians} Gaussians at one and two standard deviations.",
+        "The dashed one, with {bridge_weight} of the weight, is not fitted by EM but is the"
+        " Wasserstein barycentre of the two categories: EM alone finds only what the data set"
+        " has, and so no mixed design.",
+        "Upper right: the Bayesian information criterion of EM by number of Gaussians; it is least"
+        " with {least_bic}.",
+        "Lower right: the share α of helical chambers of the {mixed} mixed designs out of"
+        " {generated}.",
+        "Generator {generator}, seed {generator_seed}.",
+    ),
+    "hull": (
+        "Convex hulls of random training and random generated designs at equal counts, in the"
+        " plane (Fig. 5 of the paper).",
+        "Left: one draw of {hull_designs} each; right: the areas of {hull_repeats} independent"
+        " draws.",
+        "The interval holds the middle 95 % of the ratios, draw by draw.",
+        "Seed {diversity_seed}.",
+    ),
+    "comparison": (
+        "All generators by the same measures; each dot is a generator, the line its spread where"
+        " the measure was repeated.",
+        "Random sampling and resampling of the training set are the baselines: a measure that one"
+        " of them wins says little about design.",
+        "Coverage and density are over {neighbours} nearest neighbours.",
+        "Seed {diversity_seed}.",
+    ),
+    "novelty_performance": (
+        "Every simulated design by its novelty, the distance to the nearest training design in the"
+        " standardised 16 parameters, and by what it does at the last pressure it reached.",
+        "Colour and shape: the mode it was drawn for; open: Table 2 of the paper and published"
+        " actuators, where novelty 0 means that the design is itself in the training set;"
+        " crosses: designs that failed, as far as they came.",
+        "The rank correlation (Spearman) is over the designs that ended well.",
+        "{simulated} designs were simulated, {succeeded} ended well.",
+    ),
+    "bending_twist": (
+        "Bending and twist of the tip of every simulated design at the last pressure it reached.",
+        "Colour and shape: the mode it was drawn for; open: Table 2 of the paper and published"
+        " actuators; crosses: designs that failed, as far as they came.",
+        "{simulated} designs were simulated, {succeeded} ended well.",
+    ),
+    "feasibility": (
+        "What became of the simulated designs, by the mode they were drawn for and by where they"
+        " come from; the numbers are counts.",
+        "Right: the mode drawn against the mode measured from bending and twist of the joints.",
+        "{simulated} designs were simulated, {succeeded} ended well.",
+    ),
+    "distributions": (
+        "The eleven independent parameters: {generated} generated designs, stacked by mode, and"
+        " {trained} training designs as outline.",
+        "The distance is the Wasserstein distance of the two distributions in standard deviations"
+        " of the training designs: 0 would be the same distribution.",
+        "θ is compared among the designs that have slanted chambers.",
+    ),
+}
+
+_METHODS: Final = {
+    "tsne": "t-SNE",
+    "pca": "principal components",
+    "none": "none, the space of all encoded parameters",
+}
+
+
+def caption(name: str, facts: Mapping[str, str]) -> str:
+    """Return the caption of a picture with the facts filled in.
+
+    >>> caption("hull", {"diversity_seed": "1"}).endswith("Seed 1.")
+    True
+    """
+    return " ".join(s.format_map(facts) for s in CAPTIONS[name] if _needs(s) <= set(facts))
+
+
+def captions(facts: Mapping[str, str]) -> dict[str, str]:
+    """Return the captions of all pictures."""
+    return {name: caption(name, facts) for name in CAPTIONS}
+
+
+def facts_of_settings(settings: Mapping[str, Any]) -> dict[str, str]:
+    """Return the facts that a configuration alone knows (sections embedding, generator …)."""
+    embedding, generator, diversity = (
+        settings.get(name) or {} for name in ("embedding", "generator", "diversity")
+    )
+    method = embedding.get("method")
+    known = {
+        "embedding": _METHODS.get(str(method), method),
+        "perplexity": embedding.get("perplexity") if method == "tsne" else None,
+        "embedding_seed": embedding.get("seed"),
+        "generator": generator.get("method"),
+        "generator_seed": generator.get("seed"),
+        "hull_designs": diversity.get("hull_designs"),
+        "hull_repeats": diversity.get("hull_repeats"),
+        "neighbours": diversity.get("neighbours"),
+        "diversity_seed": diversity.get("seed"),
+    }
+    return {key: _written(value) for key, value in known.items() if value is not None}
+
+
+def facts_of(paths: GenerativePaths) -> dict[str, str]:
+    """Return all facts that the results of a run know."""
+    settings: dict[str, Any] = {}
+    for folder in (paths.embedding, paths.generated, paths.diversity):
+        settings |= settings_of(folder)
+    measured = _counts(paths) | _mixture(paths)
+    measured["trustworthiness"] = figures_of(paths.embedding).get("trustworthiness")
+    written = {key: _written(value) for key, value in measured.items() if value is not None}
+    return facts_of_settings(settings) | written
+
+
+def _counts(paths: GenerativePaths) -> dict[str, Any]:
+    training = table_or_none(paths.dataset / "designs.parquet")
+    generated = table_or_none(paths.generated / "designs.parquet")
+    simulated = table_or_none(paths.performance)
+    return {
+        "trained": _length(training),
+        "generated": _length(generated),
+        "mixed": None if generated is None else int((generated["mode"] == "mixed").sum()),
+        "simulated": _length(simulated),
+        "succeeded": None if simulated is None else int((simulated["status"] == "ok").sum()),
+    }
+
+
+def _mixture(paths: GenerativePaths) -> dict[str, Any]:
+    content = load_mixture(paths)
+    weights, bridge, bic = (content.get(name) for name in ("weights", "bridge", "bic"))
+    return {
+        "gaussians": len(weights) if weights else None,
+        "bridge_weight": _percent(weights[bridge]) if weights and bridge is not None else None,
+        "least_bic": min(bic, key=bic.get) if bic else None,
+    }
+
+
+def _percent(share: float) -> str:
+    return f"{number(100.0 * share, 0)} %"
+
+
+def _length(frame: pd.DataFrame | None) -> int | None:
+    return None if frame is None else len(frame)
+
+
+def _needs(sentence: str) -> set[str]:
+    return {name for _, name, _, _ in Formatter().parse(sentence) if name}
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, float):
+        return number(value, 0 if value.is_integer() else 3)
+    return f"{value:,}" if isinstance(value, int) else str(value)

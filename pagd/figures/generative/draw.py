@@ -1,0 +1,79 @@
+"""All pictures of the generative half that the results of a run allow."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Final
+
+from pagd.figures.generative.bending_twist import draw_bending_twist
+from pagd.figures.generative.captions import captions, facts_of
+from pagd.figures.generative.comparison import draw_comparison
+from pagd.figures.generative.distributions import draw_distributions
+from pagd.figures.generative.embedding import draw_embedding
+from pagd.figures.generative.feasibility import draw_feasibility
+from pagd.figures.generative.hull import draw_hull
+from pagd.figures.generative.mixture import draw_mixture
+from pagd.figures.generative.novelty_performance import draw_novelty_performance
+from pagd.figures.generative.results import GenerativePaths, NothingToDraw
+from pagd.figures.style import set_resolution
+from pagd.files import write_text
+
+__all__ = ["CAPTIONS_NAME", "PICTURES", "draw_generative"]
+
+log = logging.getLogger(__name__)
+
+CAPTIONS_NAME: Final = "captions.json"
+
+#: Name of a picture to the function that draws it, in the order of the page.
+PICTURES: Final[Mapping[str, Callable[[GenerativePaths, Path], None]]] = {
+    "embedding": draw_embedding,
+    "mixture": draw_mixture,
+    "hull": draw_hull,
+    "comparison": draw_comparison,
+    "distributions": draw_distributions,
+    "feasibility": draw_feasibility,
+    "bending_twist": draw_bending_twist,
+    "novelty_performance": draw_novelty_performance,
+}
+
+
+def draw_generative(
+    results: Path | GenerativePaths, out: Path, resolution_dpi: int = 150
+) -> dict[str, str]:
+    """Draw every picture that has data, and write captions.json for those that were drawn.
+
+    Parameters
+    ----------
+    results
+        Folder of results, or where its parts lie.
+    out
+        Folder of the pictures, NAME.png each.
+    resolution_dpi
+        Dots per inch.
+
+    Returns
+    -------
+    dict
+        Name of each picture that was left out, with the reason.
+    """
+    paths = results if isinstance(results, GenerativePaths) else GenerativePaths.under(results)
+    set_resolution(resolution_dpi)
+    missing: dict[str, str] = {}
+    for name, draw in PICTURES.items():
+        try:
+            draw(paths, out / f"{name}.png")
+        except NothingToDraw as reason:
+            missing[name] = str(reason)
+            log.info("%s.png is not drawn: %s", name, reason)
+    _write_captions(paths, out, [name for name in PICTURES if name not in missing])
+    return missing
+
+
+def _write_captions(paths: GenerativePaths, out: Path, names: list[str]) -> None:
+    written = captions(facts_of(paths))
+    content = {name: written[name] for name in names}
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    write_text(out / CAPTIONS_NAME, text + "\n")

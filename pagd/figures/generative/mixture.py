@@ -1,0 +1,185 @@
+"""Picture of the mixture and of the three modes drawn from it: Fig. 4b of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from pagd.figures.generative.labels import legend_below
+from pagd.figures.generative.plane import (
+    Gaussian,
+    draw_background,
+    draw_gaussian,
+    frame_axes,
+    gaussians_of,
+    in_plane,
+    scatter_modes,
+)
+from pagd.figures.generative.results import (
+    GenerativePaths,
+    load_generated,
+    load_mixture,
+    load_training,
+    settings_of,
+)
+from pagd.figures.style import FAINT, INK, MODE_LOOKS, new_figure, number, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["draw_mixture", "draw_plane", "mixture_figure", "name_gaussians"]
+
+
+def draw_mixture(paths: GenerativePaths, out: Path) -> None:
+    """Draw the generated designs in the plane, with the Gaussians they come from.
+
+    Raises
+    ------
+    NothingToDraw
+        If nothing was generated, or not in a plane.
+    """
+    generated = load_generated(paths)
+    method = settings_of(paths.embedding).get("embedding", {}).get("method")
+    mixture = load_mixture(paths)
+    figure = mixture_figure(
+        in_plane(load_training(paths)),
+        in_plane(generated),
+        gaussians_of(mixture),
+        {int(count): float(value) for count, value in (mixture.get("bic") or {}).items()},
+        mixture.get("components"),
+        method,
+    )
+    save(figure, out)
+
+
+def mixture_figure(
+    training: pd.DataFrame,
+    generated: pd.DataFrame,
+    gaussians: Sequence[Gaussian] = (),
+    bic: Mapping[int, float] | None = None,
+    components: int | None = None,
+    method: str | None = None,
+) -> Figure:
+    """Return the picture: the plane, BIC by number of Gaussians, α of the mixed designs.
+
+    Parameters
+    ----------
+    training, generated
+        Designs with ``z1``, ``z2``, ``mode`` and ``alpha``.
+    gaussians
+        What the generated ones are drawn from; empty for a generator without any.
+    bic
+        Bayesian information criterion by number of Gaussians; lower is better.
+    components
+        Number of Gaussians that was used.
+    method
+        Method of the embedding, which names the coordinates.
+    """
+    figure = new_figure(11.0, 6.6)
+    grid = figure.add_gridspec(2, 2, width_ratios=[1.9, 1.0])
+    plane, curve, shares = (figure.add_subplot(grid[cell]) for cell in _CELLS)
+    draw_plane(plane, training, generated, gaussians)
+    frame_axes(plane, method)
+    legend_below(plane, 4)
+    name_gaussians(plane, gaussians)
+    _draw_bic(curve, bic or {}, components)
+    _draw_alpha(shares, generated)
+    return figure
+
+
+_MOST_NAMES = 4
+_CELLS = ((slice(None), 0), (0, 1), (1, 1))
+
+
+def draw_plane(
+    axes: Axes, training: pd.DataFrame, generated: pd.DataFrame, gaussians: Sequence[Gaussian]
+) -> None:
+    """Draw training designs faintly, generated ones by mode, and the Gaussians' ellipses."""
+    draw_background(axes, training[["z1", "z2"]].to_numpy(), f"training ({len(training):,})")
+    scatter_modes(axes, generated, "z1", "z2", size=13, alpha=0.85)
+    for gaussian in gaussians:
+        draw_gaussian(axes, gaussian, (1.0, 2.0))
+    axes.autoscale_view()
+    axes.set_title(f"{len(generated):,} generated designs, by mode")
+
+
+def name_gaussians(axes: Axes, gaussians: Sequence[Gaussian]) -> None:
+    """Write its weight above each outer ellipse; the bridging Gaussian is named below its own."""
+    for gaussian in gaussians:
+        if gaussian.bridges:
+            _write_at_ellipse(axes, gaussian, f"bridging Gaussian, {gaussian.weight:.0%}", -1)
+        elif len(gaussians) <= _MOST_NAMES:
+            _write_at_ellipse(axes, gaussian, f"Gaussian, {gaussian.weight:.0%}", 1)
+
+
+def _write_at_ellipse(axes: Axes, gaussian: Gaussian, text: str, side: int) -> None:
+    height = 2.0 * np.sqrt(gaussian.covariance[1, 1])
+    axes.annotate(
+        text,
+        (float(gaussian.mean[0]), float(gaussian.mean[1] + side * height)),
+        xytext=(0, 5 * side),
+        textcoords="offset points",
+        ha="center",
+        va="bottom" if side > 0 else "top",
+        color=INK,
+        fontweight="bold" if gaussian.bridges else "normal",
+        path_effects=[withStroke(linewidth=3.0, foreground="white")],
+        zorder=6,
+    )
+
+
+def _draw_bic(axes: Axes, bic: Mapping[int, float], components: int | None) -> None:
+    axes.set_title("how many Gaussians: BIC, lower is better")
+    if not bic:
+        _say(axes, "this generator has no Gaussians to count")
+        return
+    counts = np.array(sorted(bic))
+    values = np.array([bic[int(count)] for count in counts]) / 1000.0
+    axes.plot(counts, values, "o-", color=FAINT, markersize=4, linewidth=1.2)
+    axes.set(xlabel="Gaussians K", ylabel="BIC, thousands")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    _mark(axes, counts, values, int(counts[values.argmin()]), "v", "least")
+    if components is not None and components in bic:
+        _mark(axes, counts, values, components, "o", "used")
+
+
+def _mark(
+    axes: Axes,
+    counts: NDArray[np.int64],
+    values: NDArray[np.float64],
+    count: int,
+    marker: str,
+    word: str,
+) -> None:
+    value = float(values[counts == count][0])
+    colour = MODE_LOOKS["twisting"].colour if word == "used" else INK
+    axes.plot([count], [value], marker, color=colour, markersize=8, label=f"{word}: K = {count}")
+    axes.legend(loc="best")
+
+
+def _draw_alpha(axes: Axes, generated: pd.DataFrame) -> None:
+    mixed = generated.loc[generated["mode"] == "mixed", "alpha"].to_numpy(dtype=np.float64)
+    axes.set_title(f"α of the mixed designs ({_share(len(mixed), len(generated))})")
+    if len(mixed) == 0:
+        _say(axes, f"no mixed design among {len(generated):,}")
+        return
+    axes.hist(mixed, bins=20, range=(0.0, 1.0), color=MODE_LOOKS["mixed"].colour)
+    axes.set(xlabel="share of helical chambers α", ylabel="designs", xlim=(0.0, 1.0))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+
+
+def _share(part: int, whole: int) -> str:
+    return f"{number(100.0 * part / whole, 0)} % of all" if whole else "none"
+
+
+def _say(axes: Axes, text: str) -> None:
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, text, ha="center", va="center", color=FAINT, transform=axes.transAxes)

@@ -1,0 +1,100 @@
+"""How simulated designs are shown: mode by colour and shape, known ones open, failed ones crossed.
+
+A design that failed is shown where it stood at the last pressure that converged.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.lines import Line2D
+
+from pagd.figures.generative.labels import label_points
+from pagd.figures.generative.plane import modes_of
+from pagd.figures.style import FAINT, INK, mode_look
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["draw_simulated", "legend_of_simulated", "name_known", "with_numbers"]
+
+_KNOWN: Final = ("table2", "published")
+_MOST_NAMES: Final = 30
+
+
+def with_numbers(frame: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
+    """Return the rows in which both columns are finite numbers."""
+    numbers = {name: pd.to_numeric(frame[name], errors="coerce").astype(float) for name in (x, y)}
+    finite = np.logical_and.reduce([np.isfinite(values) for values in numbers.values()])
+    return frame.assign(**numbers).loc[finite]
+
+
+def draw_simulated(axes: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
+    """Draw the rows as points; see the module for what the shapes mean."""
+    for mode in modes_of(frame):
+        rows = frame[frame["mode"] == mode]
+        known, failed = rows["origin"].isin(_KNOWN), rows["status"] != "ok"
+        _points(axes, rows[~known & ~failed], x, y, mode, known=False)
+        _points(axes, rows[known & ~failed], x, y, mode, known=True)
+        crossed = rows[failed]
+        axes.scatter(crossed[x], crossed[y], s=34, c=mode_look(mode).colour, marker="x", zorder=3)
+
+
+def name_known(axes: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
+    """Write the names of the published actuators and of Table 2 beside their points."""
+    found = with_numbers(frame, x, y)
+    known = found[found["origin"].isin(_KNOWN)].head(_MOST_NAMES)
+    points = found[[x, y]].to_numpy(dtype=np.float64)
+    names = [_name(row) for _, row in known.iterrows()]
+    label_points(axes, known[[x, y]].to_numpy(dtype=np.float64), names, points)
+
+
+def legend_of_simulated(figure: Figure, frame: pd.DataFrame) -> None:
+    """Put one legend under all panels: modes with their counts, and what open and crossed mean."""
+    counts = frame["mode"].value_counts()
+    entries = [_entry(mode, f"{mode} ({counts[mode]:,})") for mode in modes_of(frame)]
+    if frame["origin"].isin(_KNOWN).any():
+        entries.append(_handle("o", "Table 2 or published", filled=False))
+    if (frame["status"] != "ok").any():
+        entries.append(_handle("x", "failed: as far as it came", filled=True))
+    figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
+
+
+def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, mode: str, *, known: bool) -> None:
+    look = mode_look(mode)
+    axes.scatter(
+        rows[x],
+        rows[y],
+        s=58 if known else 36,
+        c="white" if known else look.colour,
+        marker=look.marker,
+        edgecolors=look.colour if known else "white",
+        linewidths=1.7 if known else 0.5,
+        zorder=4 if known else 3,
+    )
+
+
+def _name(row: pd.Series[str]) -> str:
+    return f"Table 2: {row['name']}" if row["origin"] == "table2" else str(row["name"])
+
+
+def _entry(mode: str, label: str) -> Line2D:
+    look = mode_look(mode)
+    return Line2D([], [], color=look.colour, marker=look.marker, linestyle="", label=label)
+
+
+def _handle(marker: str, label: str, *, filled: bool) -> Line2D:
+    face = FAINT if filled else "white"
+    return Line2D(
+        [],
+        [],
+        color=INK,
+        marker=marker,
+        markerfacecolor=face,
+        markeredgewidth=1.5,
+        linestyle="",
+        label=label,
+    )
