@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pagd.embedding.tsne import TSNE
     from pagd.encoding import Encoder
     from pagd.generators.baselines import RandomSampling, Resampling
-    from pagd.generators.gaussian import FullSpaceMixture, ReducedSpaceMixture
+    from pagd.generators.gaussian import FullSpaceMixture, PlainMixture, ReducedSpaceMixture
     from pagd.generators.generate import Generated, generate
     from pagd.generators.kernel_density import KernelDensityGenerator
     from pagd.selection import choose
@@ -46,7 +46,7 @@ _HOMES = {
     "pagd.embedding.tsne": ("TSNE",),
     "pagd.encoding": ("Encoder",),
     "pagd.generators.baselines": ("RandomSampling", "Resampling"),
-    "pagd.generators.gaussian": ("FullSpaceMixture", "ReducedSpaceMixture"),
+    "pagd.generators.gaussian": ("FullSpaceMixture", "PlainMixture", "ReducedSpaceMixture"),
     "pagd.generators.generate": ("Generated", "generate"),
     "pagd.generators.kernel_density": ("KernelDensityGenerator",),
     "pagd.selection": ("choose",),
@@ -63,6 +63,7 @@ __all__ = [
     "Generated",
     "GeometryRules",
     "KernelDensityGenerator",
+    "PlainMixture",
     "PrincipalComponents",
     "RandomSampling",
     "ReducedSpaceMixture",

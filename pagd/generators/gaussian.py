@@ -11,7 +11,7 @@ from pagd.embedding.linear import FullSpace
 from pagd.generators.interface import Proposal
 from pagd.generators.mixture import Mixture, bic_curve, fit_mixture
 
-__all__ = ["FullSpaceMixture", "ReducedSpaceMixture"]
+__all__ = ["FullSpaceMixture", "PlainMixture", "ReducedSpaceMixture"]
 
 
 class ReducedSpaceMixture:
@@ -72,6 +72,16 @@ class ReducedSpaceMixture:
         if self.components == "bic":
             return min(self.bic, key=lambda k: self.bic[k]) + (self.bridge_share > 0)
         return self.components
+
+
+class PlainMixture(ReducedSpaceMixture):
+    """The mixture as EM gives it, without a bridge: what the bridge is to be compared with."""
+
+    name = "gmm_plain"
+    shows_bic = False
+
+    def __init__(self, components: int | Literal["bic"] = 3, largest_components: int = 10) -> None:
+        super().__init__(components, largest_components, bridge_share=0.0)
 
 
 class FullSpaceMixture(ReducedSpaceMixture):

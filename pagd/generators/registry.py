@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from pagd.design import GeometryRules
 from pagd.generators.baselines import RandomSampling, Resampling
-from pagd.generators.gaussian import FullSpaceMixture, ReducedSpaceMixture
+from pagd.generators.gaussian import FullSpaceMixture, PlainMixture, ReducedSpaceMixture
 from pagd.generators.interface import Generator
 from pagd.generators.kernel_density import KernelDensityGenerator
 
@@ -24,6 +24,9 @@ def _mixture_options(given: Section) -> dict[str, Any]:
 #: and the rules of the geometry.
 GENERATORS: Final[Mapping[str, Callable[[Section, GeometryRules], Generator]]] = {
     "gmm": lambda given, rules: ReducedSpaceMixture(**_mixture_options(given)),
+    "gmm_plain": lambda given, rules: PlainMixture(
+        given["components"], given["largest_components"]
+    ),
     "gmm_full": lambda given, rules: FullSpaceMixture(**_mixture_options(given)),
     "kde": lambda given, rules: KernelDensityGenerator(given["bandwidth"]),
     "random": lambda given, rules: RandomSampling(rules),
