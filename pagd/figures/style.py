@@ -64,11 +64,12 @@ class Look(NamedTuple):
     marker: str
 
 
-# Four of Okabe and Ito's colours, which also differ in lightness, each with a shape of its own.
+# Of Okabe and Ito's colours the three that lie farthest apart for every kind of sight, each with a
+# shape of its own.
 MODE_LOOKS: Final = {
     "bending": Look("#0072b2", "o"),
     "twisting": Look("#d55e00", "^"),
-    "mixed": Look("#009e73", "D"),
+    "mixed": Look("#cc79a7", "D"),
 }
 _OTHER_MODE = Look("#8a94a0", "X")
 
@@ -77,10 +78,10 @@ ORIGIN_COLOURS: Final = {
     "jitter": "#e69f00",
     "interpolation": "#0072b2",
     "published": "#1d2733",
-    "table2": "#cc79a7",
+    "table2": "#d55e00",
     "generated": "#56b4e9",
 }
-_OTHER_ORIGIN = "#009e73"
+_OTHER_ORIGIN = "#cc79a7"
 
 # What went well stays quiet; every way to fail has its colour, from early stages (dark) to late.
 STATUS_COLOURS: Final = {
@@ -89,13 +90,14 @@ STATUS_COLOURS: Final = {
     "bending_limit": "#56b4e9",
     "self_collision": "#e69f00",
     "overstretched": "#d55e00",
-    "not_converged": "#cc79a7",
+    "not_converged": "#8c6d31",
     "mesh_failed": "#6b4c9a",
     "invalid_geometry": "#1d2733",
 }
 
 _LOOK: dict[str, Any] = {
-    "font.family": "DejaVu Sans",
+    # The second is for vector pictures, where DejaVu is not installed.
+    "font.family": ["DejaVu Sans", "sans-serif"],
     "font.size": 9.0,
     "text.color": INK,
     "axes.edgecolor": FAINT,

@@ -58,8 +58,11 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "Seed {diversity_seed}.",
     ),
     "comparison": (
-        "All generators by the same measures; each dot is a generator, the line its spread where"
-        " the measure was repeated.",
+        "All generators by the same measures; each dot is a generator, the line its interval"
+        " where there is one; the dashed line is the same measure of the training designs.",
+        "All parameters: the standardised 16 parameters; plane: the reduced space scaled to the"
+        " unit square; small plane: the same made of {plane_designs} training designs, as the"
+        " paper's, over {plane_seeds} seeds.",
         "Random sampling and resampling of the training set are the baselines: a measure that one"
         " of them wins says little about design.",
         "Coverage and density are over {neighbours} nearest neighbours.",
@@ -130,6 +133,8 @@ def facts_of_settings(settings: Mapping[str, Any]) -> dict[str, str]:
         "generator_seed": generator.get("seed"),
         "hull_designs": diversity.get("hull_designs"),
         "hull_repeats": diversity.get("hull_repeats"),
+        "plane_designs": diversity.get("plane_designs"),
+        "plane_seeds": diversity.get("plane_seeds"),
         "neighbours": diversity.get("neighbours"),
         "diversity_seed": diversity.get("seed"),
     }

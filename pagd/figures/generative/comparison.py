@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import MaxNLocator
 
+from pagd.diversity.comparison import TRAINING
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw, table_or_none
 from pagd.figures.style import FAINT, INK, new_figure, save
 
@@ -18,8 +21,22 @@ if TYPE_CHECKING:
 __all__ = ["comparison_figure", "draw_comparison"]
 
 _COLUMNS: Final = 4
-_ARROWS: Final = {"higher": "more is better →", "lower": "← less is better"}
-_OWN: Final = "#d55e00"
+_ARROWS: Final = {"higher": "  more is better →", "lower": "  ← less is better"}
+_OWN: Final = "#e69f00"
+_SPACES: Final = {"encoded": "all parameters", "plane": "plane", "plane_sample": "small plane"}
+_NAMES: Final = {
+    "dpp": "DPP score",
+    "mmd": "MMD², from training",
+    "mode_part": "share of novelty by mode",
+    "hull_ratio": "hull / training hull",
+}
+# Of the plane only what the paper measures there, and what is told by few numbers.
+_SHOWN: Final = {
+    "plane": ("novelty", "hull_ratio", "coverage", "density"),
+    "plane_sample": ("novelty",),
+}
+# Their ratio to the training designs says the same.
+_HIDDEN: Final = ("hull_size",)
 
 
 def draw_comparison(paths: GenerativePaths, out: Path) -> None:
@@ -36,82 +53,82 @@ def draw_comparison(paths: GenerativePaths, out: Path) -> None:
     save(comparison_figure(rows), out)
 
 
-class _Measure(NamedTuple):
-    title: str
-    better: str
-
-
-#: Measures that are known: what they are called, and which way they get better.
-_MEASURES: Final = {
-    "novelty": _Measure("novelty", ""),
-    "hull_ratio": _Measure("hull, generated / training", "higher"),
-    "hull": _Measure("hull, generated / training", "higher"),
-    "coverage": _Measure("coverage", "higher"),
-    "density": _Measure("density", "higher"),
-    "mmd": _Measure("maximum mean discrepancy", "lower"),
-    "dpp": _Measure("DPP score, log-determinant", "higher"),
-    "mean_pairwise": _Measure("mean pairwise distance", "higher"),
-    "uniformity": _Measure("uniformity", "higher"),
-}
-
-
 def comparison_figure(rows: pd.DataFrame) -> Figure:
     """Return the picture: a panel a measure and space, a line a generator.
 
     Parameters
     ----------
     rows
-        ``generator``, ``space``, ``metric``, ``value`` and, where there is an interval, ``low``
-        and ``high``; nulls are left out. A column ``better`` (higher, lower) overrides what is
-        known of a measure.
+        ``generator``, ``space``, ``mode``, ``metric``, ``better`` (higher, lower, neither),
+        ``value`` and its interval ``low`` to ``high``, null where there is none; what the stage
+        diversity leaves in comparison.parquet. The first generator is the one configured; the
+        training designs are drawn as a line for comparison.
 
     Raises
     ------
     NothingToDraw
         If there is no number among them.
     """
-    found = rows[pd.to_numeric(rows["value"], errors="coerce").notna()]
+    found = _shown(rows)
     if found.empty:
         raise NothingToDraw("No generator has any measure.")
-    generators = list(dict.fromkeys(rows["generator"]))
-    panels = list(found.groupby(["metric", "space"], sort=False))
+    generators = [name for name in dict.fromkeys(found["generator"]) if name != TRAINING]
+    panels = list(found.groupby(["space", "metric"], sort=False))
     columns = min(_COLUMNS, len(panels))
     lines = -(-len(panels) // columns)
-    figure = new_figure(3.0 * columns + 0.8, (0.27 * len(generators) + 1.15) * lines + 0.3)
+    figure = new_figure(2.9 * columns + 0.8, (0.22 * len(generators) + 1.0) * lines + 0.3)
     axes = figure.subplots(lines, columns, sharey=True, squeeze=False).ravel()
-    for panel, ((metric, space), part) in zip(axes, panels, strict=False):
-        _draw_measure(panel, str(metric), str(space), part, generators)
+    for panel, ((space, metric), part) in zip(axes, panels, strict=False):
+        _draw_measure(panel, part, generators)
+        _head(panel, str(metric), str(space), str(part["better"].iloc[0]))
     for panel in axes[len(panels) :]:
         panel.set_axis_off()
     return figure
 
 
-def _draw_measure(
-    axes: Axes, metric: str, space: str, part: pd.DataFrame, generators: list[str]
-) -> None:
-    measure = _MEASURES.get(metric, _Measure(metric.replace("_", " "), ""))
-    heights = [generators.index(name) for name in part["generator"]]
-    values = part["value"].to_numpy(dtype=np.float64)
-    for bound in ("low", "high"):
-        ends = pd.to_numeric(part[bound], errors="coerce") if bound in part else values
-        axes.hlines(heights, values, np.where(np.isnan(ends), values, ends), color=FAINT)
-    first = [_OWN if height == 0 else INK for height in heights]
-    axes.scatter(values, heights, s=34, c=first, zorder=3)
+def _shown(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of all modes together that get a panel and have a value."""
+    numbers = rows.assign(
+        **{
+            name: pd.to_numeric(rows[name], errors="coerce").astype(float)
+            for name in ("value", "low", "high")
+        }
+    )
+    wanted = [
+        metric not in _HIDDEN and metric in _SHOWN.get(space, (metric,))
+        for space, metric in zip(rows["space"], rows["metric"], strict=True)
+    ]
+    has_value = np.isfinite(numbers["value"].to_numpy()) & (rows["mode"] == "all").to_numpy()
+    found: pd.DataFrame = numbers.loc[has_value & wanted]
+    return found.sort_values("space", key=_order, kind="stable")
+
+
+def _order(spaces: pd.Series[str]) -> pd.Series[int]:
+    return spaces.map({space: i for i, space in enumerate(reversed(_SPACES))}).fillna(len(_SPACES))
+
+
+def _draw_measure(axes: Axes, part: pd.DataFrame, generators: Sequence[str]) -> None:
+    yardstick = part[part["generator"] == TRAINING]
+    for value in yardstick["value"]:
+        axes.axvline(value, color=FAINT, linestyle="--", linewidth=1.2, zorder=1)
+    own = part[part["generator"] != TRAINING]
+    heights = [generators.index(name) for name in own["generator"]]
+    values = own["value"].to_numpy()
+    colours = [INK if height else _OWN for height in heights]
+    low, high = (own[name].fillna(own["value"]).to_numpy() for name in ("low", "high"))
+    axes.hlines(heights, low, high, color=colours, linewidth=1.6, alpha=0.6)
+    axes.scatter(values, heights, s=34, c=colours, zorder=3)
     axes.set_yticks(range(len(generators)), generators)
     axes.set_ylim(len(generators) - 0.5, -0.5)
-    axes.margins(x=0.15)
-    axes.set_title(f"{measure.title}\n", fontsize=9)
-    better = part["better"].iloc[0] if "better" in part else measure.better
-    _write_above(axes, f"{space.replace('_', ' ')}{_arrow(better)}")
+    axes.margins(x=0.12)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
 
 
-def _arrow(better: str | None) -> str:
-    return f"   {_ARROWS[better]}" if better in _ARROWS else ""
-
-
-def _write_above(axes: Axes, text: str) -> None:
+def _head(axes: Axes, metric: str, space: str, better: str) -> None:
+    """Write what is measured above the panel, and below that where, and which way is better."""
+    axes.set_title(f"{_NAMES.get(metric, metric.replace('_', ' '))}\n", fontsize=9)
     axes.annotate(
-        text,
+        f"{_SPACES.get(space, space)}{_ARROWS.get(better, '')}",
         (0.0, 1.0),
         xytext=(0, 4),
         xycoords="axes fraction",

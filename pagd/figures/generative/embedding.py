@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 from pagd.figures.generative.labels import legend_below
-from pagd.figures.generative.plane import frame_axes, in_plane, scatter_modes
-from pagd.figures.generative.results import GenerativePaths, load_training, settings_of
+from pagd.figures.generative.plane import frame_axes, scatter_modes
+from pagd.figures.generative.projection import load_plane
+from pagd.figures.generative.results import GenerativePaths, settings_of
 from pagd.figures.style import new_figure, origin_colour, save
 
 if TYPE_CHECKING:
@@ -33,9 +34,9 @@ def draw_embedding(paths: GenerativePaths, out: Path) -> None:
     NothingToDraw
         If there is no data set, or it has no plane.
     """
-    settings = settings_of(paths.embedding).get("embedding", {})
-    training = in_plane(load_training(paths))
-    save(embedding_figure(training, settings.get("method"), settings.get("seed", 1)), out)
+    plane = load_plane(paths)
+    seed = settings_of(paths.embedding).get("embedding", {}).get("seed", 1)
+    save(embedding_figure(plane.training, plane.method, seed), out)
 
 
 def embedding_figure(training: pd.DataFrame, method: str | None = None, seed: int = 1) -> Figure:
@@ -50,7 +51,7 @@ def embedding_figure(training: pd.DataFrame, method: str | None = None, seed: in
     seed
         Of the choice of the points of the left panel.
     """
-    figure = new_figure(11.0, 5.9)
+    figure = new_figure(11.0, 5.4)
     left, right = figure.subplots(1, 2)
     some = _some(training, seed)
     scatter_modes(left, some, "z1", "z2", size=11, alpha=0.8)
@@ -61,7 +62,7 @@ def embedding_figure(training: pd.DataFrame, method: str | None = None, seed: in
         axes.update_datalim(training[["z1", "z2"]].to_numpy())  # one scale for both
         axes.autoscale_view()
         frame_axes(axes, method)
-        legend_below(axes, 4)
+        legend_below(axes, 3)
     return figure
 
 

@@ -10,18 +10,12 @@ import pandas as pd
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from pagd.diversity.hull import hull_corners
+from pagd.diversity.novelty import unit_square
 from pagd.figures.generative.labels import legend_below
-from pagd.figures.generative.plane import draw_background, frame_axes, in_plane
-from pagd.figures.generative.results import (
-    GenerativePaths,
-    NothingToDraw,
-    load_generated,
-    load_training,
-    settings_of,
-    table_or_none,
-)
-from pagd.figures.style import new_figure, number, save
+from pagd.figures.generative.plane import draw_background, frame_axes
+from pagd.figures.generative.projection import load_plane
+from pagd.figures.generative.results import GenerativePaths, NothingToDraw, table_or_none
+from pagd.figures.style import INK, new_figure, number, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,8 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_hull", "hull_figure"]
 
-# Colour and marker of training and generated designs: two of Okabe and Ito's.
-_LOOKS: Final = {"training": ("#0072b2", "o"), "generated": ("#d55e00", "^")}
+# Colour and marker of training and generated designs; no colours of modes.
+_LOOKS: Final = {"training": (INK, "o"), "generated": ("#e69f00", "s")}
 
 
 def draw_hull(paths: GenerativePaths, out: Path) -> None:
@@ -39,65 +33,55 @@ def draw_hull(paths: GenerativePaths, out: Path) -> None:
     Raises
     ------
     NothingToDraw
-        If nothing was generated, not in a plane, or the hulls were not compared.
+        If the hulls were not compared, as in a space that is no plane.
     """
-    draws = table_or_none(paths.diversity / "hull.parquet")
-    if draws is None:
-        raise NothingToDraw("The hulls were not compared.")
-    training, generated = in_plane(load_training(paths)), in_plane(load_generated(paths))
-    settings = settings_of(paths.diversity).get("diversity", {})
-    count, seed = settings.get("hull_designs", 50), settings.get("seed", 1)
-    method = settings_of(paths.embedding).get("embedding", {}).get("method")
-    places = [frame[["z1", "z2"]].to_numpy() for frame in (training, generated)]
-    save(hull_figure(places[0], places[1], draws, count, seed, method), out)
+    areas = table_or_none(paths.diversity / "hull.parquet")
+    points = table_or_none(paths.diversity / "hull_points.parquet")
+    if areas is None or points is None:
+        raise NothingToDraw("The hulls were not compared in a plane.")
+    plane = load_plane(paths)
+    training = plane.training[["z1", "z2"]].to_numpy()
+    save(hull_figure(unit_square(training, training), points, areas, plane.method), out)
 
 
 def hull_figure(
     training: NDArray[np.float64],
-    generated: NDArray[np.float64],
-    draws: pd.DataFrame,
-    count: int = 50,
-    seed: int = 1,
+    points: pd.DataFrame,
+    areas: pd.DataFrame,
     method: str | None = None,
 ) -> Figure:
     """Return the picture: two hulls of some random points each, and the areas of many draws.
 
     Parameters
     ----------
-    training, generated
-        Points (n, 2) and (m, 2) in the plane.
-    draws
-        A row a draw: the areas ``training`` and ``generated``.
-    count
-        Points of each hull.
-    seed
-        Of the choice of the points that are shown.
+    training
+        All training designs (n, 2) in the plane.
+    points
+        The designs of one draw: ``set`` (training or generated), ``z1``, ``z2``, and ``corner``,
+        their place around the hull, null within it.
+    areas
+        A row a draw: the areas ``training`` and ``generated`` of the hulls.
     method
         Method of the embedding, which names the coordinates.
     """
-    figure = new_figure(11.0, 5.6)
-    plane, areas = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
-    rng = np.random.default_rng(seed)
+    figure = new_figure(11.0, 5.4)
+    plane, histogram = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
     draw_background(plane, training, f"all training ({len(training):,})")
-    for name, points in (("training", training), ("generated", generated)):
-        _draw_hull(plane, name, _some(points, count, rng))
-    plane.set_title(f"convex hulls of {count} random designs each")
+    for name in _LOOKS:
+        _draw_hull(plane, name, points[points["set"] == name])
+    counts = points["set"].value_counts()
+    plane.set_title(f"convex hulls of {counts.max():,} random designs each")
     frame_axes(plane, method)
     legend_below(plane, 3)
-    _draw_areas(areas, draws)
+    _draw_areas(histogram, areas)
     return figure
 
 
-def _some(points: NDArray[np.float64], count: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    chosen = rng.choice(len(points), min(count, len(points)), replace=False)
-    return points[np.sort(chosen)]
-
-
-def _draw_hull(axes: Axes, name: str, points: NDArray[np.float64]) -> None:
+def _draw_hull(axes: Axes, name: str, points: pd.DataFrame) -> None:
     colour, marker = _LOOKS[name]
     axes.scatter(
-        points[:, 0],
-        points[:, 1],
+        points["z1"],
+        points["z2"],
         s=26,
         c=colour,
         marker=marker,
@@ -106,7 +90,8 @@ def _draw_hull(axes: Axes, name: str, points: NDArray[np.float64]) -> None:
         label=f"{name} ({len(points):,})",
         zorder=3,
     )
-    corners = points[hull_corners(points)]
+    around = points[points["corner"].notna()].sort_values("corner")
+    corners = around[["z1", "z2"]].to_numpy(dtype=np.float64)
     axes.fill(*corners.T, facecolor=colour, alpha=0.12, zorder=1)
     outline = np.vstack([corners, corners[:1]])
     style = "-" if name == "training" else (0, (6, 2))
@@ -118,30 +103,24 @@ def _draw_areas(axes: Axes, draws: pd.DataFrame) -> None:
     limits = (0.98 * float(areas.min()), 1.02 * float(areas.max()) + 1e-12)
     for (name, (colour, _)), values in zip(_LOOKS.items(), areas.T, strict=True):
         median = float(np.median(values))
-        axes.hist(
-            values,
-            bins=25,
-            range=limits,
-            color=colour,
-            alpha=0.45,
-            label=f"{name}, median {_short(median)}",
-        )
+        label = f"{name}, median {_short(median)}"
+        axes.hist(values, bins=25, range=limits, color=colour, alpha=0.45, label=label)
         axes.axvline(median, color=colour, linewidth=1.6, linestyle="--")
-    axes.set(xlabel="area of the hull", ylabel="draws")
+    axes.set(xlabel="area of the hull, unit square: 1", ylabel="draws")
     axes.set_title(f"areas of {len(draws):,} draws\n{_ratio(areas)}")
     axes.xaxis.set_major_locator(MaxNLocator(5))
     legend_below(axes, 2)
 
 
 def _short(value: float) -> str:
-    return number(value, 0) if abs(value) >= 10 else number(value, 3)
+    return number(value, 0) if abs(value) >= 10 else number(value, 2)
 
 
 def _ratio(areas: NDArray[np.float64]) -> str:
-    """Return the sentence on the ratio of the areas, draw by draw."""
-    flat = areas[:, 0] > 0.0
-    if not flat.any():
-        return "the training hull has no area"
-    ratios = areas[flat, 1] / areas[flat, 0]
-    low, middle, high = (number(float(q), 2) for q in np.quantile(ratios, (0.025, 0.5, 0.975)))
+    """Return the ratio of the areas, draw by draw: median and the middle 95 %."""
+    some = areas[areas[:, 0] > 0.0]
+    if len(some) == 0:
+        return "the training hulls have no area"
+    quantiles = np.quantile(some[:, 1] / some[:, 0], (0.025, 0.5, 0.975))
+    low, middle, high = (number(float(value), 2) for value in quantiles)
     return f"generated / training: {middle} (95 %: {low} to {high})"

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
@@ -18,17 +17,10 @@ from pagd.figures.generative.plane import (
     draw_background,
     draw_gaussian,
     frame_axes,
-    gaussians_of,
-    in_plane,
     scatter_modes,
 )
-from pagd.figures.generative.results import (
-    GenerativePaths,
-    load_generated,
-    load_mixture,
-    load_training,
-    settings_of,
-)
+from pagd.figures.generative.projection import gaussians_of, load_generated_plane, load_plane
+from pagd.figures.generative.results import GenerativePaths, load_mixture
 from pagd.figures.style import FAINT, INK, MODE_LOOKS, new_figure, number, save
 
 if TYPE_CHECKING:
@@ -46,16 +38,14 @@ def draw_mixture(paths: GenerativePaths, out: Path) -> None:
     NothingToDraw
         If nothing was generated, or not in a plane.
     """
-    generated = load_generated(paths)
-    method = settings_of(paths.embedding).get("embedding", {}).get("method")
-    mixture = load_mixture(paths)
+    plane, mixture = load_plane(paths), load_mixture(paths)
     figure = mixture_figure(
-        in_plane(load_training(paths)),
-        in_plane(generated),
-        gaussians_of(mixture),
+        plane.training,
+        load_generated_plane(paths, plane),
+        gaussians_of(mixture, plane),
         {int(count): float(value) for count, value in (mixture.get("bic") or {}).items()},
         mixture.get("components"),
-        method,
+        plane.method,
     )
     save(figure, out)
 
@@ -131,7 +121,7 @@ def _write_at_ellipse(axes: Axes, gaussian: Gaussian, text: str, side: int) -> N
         va="bottom" if side > 0 else "top",
         color=INK,
         fontweight="bold" if gaussian.bridges else "normal",
-        path_effects=[withStroke(linewidth=3.0, foreground="white")],
+        bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "alpha": 0.75, "linewidth": 0},
         zorder=6,
     )
 
@@ -160,7 +150,7 @@ def _mark(
     word: str,
 ) -> None:
     value = float(values[counts == count][0])
-    colour = MODE_LOOKS["twisting"].colour if word == "used" else INK
+    colour = "#e69f00" if word == "used" else INK
     axes.plot([count], [value], marker, color=colour, markersize=8, label=f"{word}: K = {count}")
     axes.legend(loc="best")
 

@@ -11,14 +11,9 @@ from matplotlib import rc_context
 
 from pagd.figures.generative.labels import legend_below
 from pagd.figures.generative.mixture import draw_plane, name_gaussians
-from pagd.figures.generative.plane import Gaussian, frame_axes, gaussians_of, in_plane
-from pagd.figures.generative.results import (
-    GenerativePaths,
-    load_generated,
-    load_mixture,
-    load_training,
-    settings_of,
-)
+from pagd.figures.generative.plane import Gaussian, frame_axes
+from pagd.figures.generative.projection import load_gaussians, load_generated_plane, load_plane
+from pagd.figures.generative.results import GenerativePaths
 from pagd.figures.style import new_figure
 from pagd.files import replaced_file
 
@@ -30,7 +25,7 @@ __all__ = ["draw_modes", "modes_figure"]
 # Points of each kind: as many as a file for git and a small picture bear.
 _POINTS: Final = 300
 # With a salt of its own matplotlib names equal things equally; by default it draws lots.
-_SALT: Final[dict[Any, Any]] = {"svg.hashsalt": "pagd", "svg.fonttype": "path"}
+_SALT: Final[dict[Any, Any]] = {"svg.hashsalt": "pagd", "svg.fonttype": "none"}
 
 
 def draw_modes(paths: GenerativePaths, out: Path) -> None:
@@ -41,12 +36,9 @@ def draw_modes(paths: GenerativePaths, out: Path) -> None:
     NothingToDraw
         If nothing was generated, or not in a plane.
     """
-    figure = modes_figure(
-        in_plane(load_training(paths)),
-        in_plane(load_generated(paths)),
-        gaussians_of(load_mixture(paths)),
-        settings_of(paths.embedding).get("embedding", {}).get("method"),
-    )
+    plane = load_plane(paths)
+    generated = load_generated_plane(paths, plane)
+    figure = modes_figure(plane.training, generated, load_gaussians(paths, plane), plane.method)
     with rc_context(_SALT), replaced_file(out) as temporary:
         figure.savefig(temporary, format="svg", metadata={"Date": None, "Creator": None})
 

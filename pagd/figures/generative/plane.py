@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
@@ -22,7 +22,6 @@ __all__ = [
     "draw_background",
     "draw_gaussian",
     "frame_axes",
-    "gaussians_of",
     "in_plane",
     "modes_of",
     "scatter_modes",
@@ -32,7 +31,7 @@ __all__ = [
 _AXES: Final = {
     "tsne": ("t-SNE 1", "t-SNE 2"),
     "pca": ("principal component 1", "principal component 2"),
-    "none": ("coordinate 1 (standardised)", "coordinate 2 (standardised)"),
+    "none": ("principal component 1 of all parameters", "principal component 2"),
 }
 
 
@@ -61,24 +60,6 @@ def in_plane(frame: pd.DataFrame) -> pd.DataFrame:
     if found.empty:
         raise NothingToDraw("No design has a point in the plane.")
     return found.astype({"z1": np.float64, "z2": np.float64})
-
-
-def gaussians_of(mixture: Mapping[str, Any]) -> list[Gaussian]:
-    """Return the Gaussians of a mixture as the plane sees them: their first two coordinates.
-
-    Leaving out coordinates is exact: what is left of a Gaussian is one, with the mean and the
-    covariance of the rest.
-    """
-    if not mixture.get("weights"):
-        return []
-    means = np.asarray(mixture["means"], dtype=np.float64)
-    covariances = np.asarray(mixture["covariances"], dtype=np.float64)
-    if means.ndim != 2 or means.shape[1] < 2:
-        return []
-    return [
-        Gaussian(means[k, :2], covariances[k, :2, :2], float(weight), k == mixture.get("bridge"))
-        for k, weight in enumerate(mixture["weights"])
-    ]
 
 
 def modes_of(frame: pd.DataFrame) -> list[str]:
