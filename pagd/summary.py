@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ __all__ = ["performance_row", "write_summary", "write_trajectories"]
 
 #: Columns of the table for people: heading, key of the figures, format ('z': no minus zero).
 _FOR_PEOPLE = (
+    ("origin", "origin", ""),
     ("mode drawn", "mode", ""),
     ("mode measured", "measured_mode", ""),
     ("material", "material", ""),
@@ -28,11 +29,17 @@ _FOR_PEOPLE = (
     ("tip y, mm", "tip_y_mm", "z.1f"),
     ("tip z, mm", "tip_z_mm", "z.1f"),
     ("energy balance", "energy_balance", "z.4f"),
+    ("novelty", "novelty", ".3f"),
     ("time, s", "wall_s", ".1f"),
 )
 
 
-def write_summary(metrics: Sequence[Path], performance: Path, table: Path) -> None:
+def write_summary(
+    metrics: Sequence[Path],
+    performance: Path,
+    table: Path,
+    novelty: Mapping[str, float] | None = None,
+) -> None:
     """Gather the records of the stage metrics.
 
     Parameters
@@ -43,10 +50,14 @@ def write_summary(metrics: Sequence[Path], performance: Path, table: Path) -> No
         Parquet file to write, with the columns ``PERFORMANCE``.
     table
         CSV file to write, for people.
+    novelty
+        Distance to the nearest training design by design_id; null for what is not in it.
     """
+    known = novelty or {}
     records = [read_record(folder) for folder in metrics]
-    write_rows(performance, PERFORMANCE, [performance_row(record) for record in records])
-    write_text(table, _for_people(records))
+    rows = [performance_row(r) | {"novelty": known.get(r.design_id)} for r in records]
+    write_rows(performance, PERFORMANCE, rows)
+    write_text(table, _for_people(records, rows))
 
 
 def write_trajectories(metrics: Sequence[Path], trajectories: Path) -> None:
@@ -73,12 +84,12 @@ def performance_row(record: Record) -> dict[str, Any]:
     }
 
 
-def _for_people(records: Sequence[Record]) -> str:
+def _for_people(records: Sequence[Record], rows: Sequence[Mapping[str, Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["design", *(heading for heading, _, _ in _FOR_PEOPLE), "status", "reason"])
-    for record in records:
-        figures = record.figures | performance_row(record)
+    for record, row in zip(records, rows, strict=True):
+        figures = {**record.figures, **row}
         cells = [_cell(figures.get(key), form) for _, key, form in _FOR_PEOPLE]
         writer.writerow([record.design_id, *cells, record.status.value, record.reason or ""])
     return text.getvalue()

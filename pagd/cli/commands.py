@@ -8,10 +8,9 @@ from __future__ import annotations
 import re
 from argparse import Namespace
 from pathlib import Path
-from typing import Any
 
-from pagd import config as configuration
 from pagd.catalogue import design_from
+from pagd.cli.options import checked_threads, config_of
 from pagd.cli.output import print_design, print_result, progress_to, verdict
 from pagd.errors import InputError
 
@@ -36,7 +35,7 @@ def check_design(options: Namespace) -> int:
     from pagd.stages.geometry import rules_of
 
     named = design_from(options.design)
-    broken = violations(named.design, rules_of(_config(options)))
+    broken = violations(named.design, rules_of(config_of(options)))
     for violation in broken:
         print(violation)
     print(f"{named.name}: {'cannot be built' if broken else 'can be built'}")
@@ -47,7 +46,7 @@ def show_design(options: Namespace) -> int:
     """Print a design's parameters and what follows from them."""
     from pagd.stages.geometry import rules_of
 
-    print_design(design_from(options.design), rules_of(_config(options)))
+    print_design(design_from(options.design), rules_of(config_of(options)))
     return 0
 
 
@@ -55,7 +54,7 @@ def geometry(options: Namespace) -> int:
     """Run the stage geometry."""
     from pagd.stages import geometry as stage
 
-    record = stage.run(design_from(options.design), options.out, _config(options))
+    record = stage.run(design_from(options.design), options.out, config_of(options))
     return verdict(record, options.keep_going)
 
 
@@ -63,7 +62,7 @@ def repair(options: Namespace) -> int:
     """Run the stage repair."""
     from pagd.stages import repair as stage
 
-    record = stage.run(options.geometry, options.out, _config(options))
+    record = stage.run(options.geometry, options.out, config_of(options))
     return verdict(record, options.keep_going)
 
 
@@ -71,7 +70,7 @@ def mesh(options: Namespace) -> int:
     """Run the stage mesh, on a design's surfaces or on the user's own."""
     from pagd.stages import mesh as stage
 
-    config = _config(options)
+    config = config_of(options)
     if options.body or options.base:
         own = stage.OwnSurfaces(name=_name(options), half=options.half, **_both(options))
         record = stage.run_own(own, options.out, config)
@@ -87,7 +86,7 @@ def solve(options: Namespace) -> int:
     _use_threads(options.threads)
     from pagd.stages import solve as stage
 
-    config = _config(options)
+    config = config_of(options)
     record = stage.run(
         options.mesh,
         options.out,
@@ -109,7 +108,7 @@ def metrics(options: Namespace) -> int:
     folders = stage.Folders(
         mesh=options.mesh, solve=options.solve, geometry=options.geometry, repair=options.repair
     )
-    record = stage.run(folders, options.out, _config(options), options.sections)
+    record = stage.run(folders, options.out, config_of(options), options.sections)
     print_result(record)
     return verdict(record, options.keep_going)
 
@@ -118,7 +117,7 @@ def figures(options: Namespace) -> int:
     """Run the stage figures."""
     from pagd.stages import figures as stage
 
-    record = stage.run(options.design_folder, options.out, _config(options))
+    record = stage.run(options.design_folder, options.out, config_of(options))
     return verdict(record, options.keep_going)
 
 
@@ -127,9 +126,16 @@ def summary(options: Namespace) -> int:
     from pagd.record import RECORD_NAME
     from pagd.summary import write_summary, write_trajectories
 
-    folders = [folder / "metrics" for folder in options.design_folders]
-    measured = [folder for folder in folders if (folder / RECORD_NAME).is_file()]
-    write_summary(measured, options.out / "performance.parquet", options.out / "summary.csv")
+    folders = options.design_folders
+    there = [folder for folder in folders if (folder / "metrics" / RECORD_NAME).is_file()]
+    measured = [folder / "metrics" for folder in there]
+    novelty: dict[str, float] = {}
+    if options.dataset:
+        from pagd.stages.novelty import novelty_of
+
+        novelty = novelty_of([folder / "geometry" for folder in there], options.dataset)
+    performance, table = options.out / "performance.parquet", options.out / "summary.csv"
+    write_summary(measured, performance, table, novelty)
     write_trajectories(measured, options.out / "trajectories.parquet")
     print(f"{len(measured)} of {len(folders)} designs have a record of their metrics.")
     return 0
@@ -149,7 +155,7 @@ def run_all(options: Namespace) -> int:
     from pagd.stages import chain
     from pagd.stages.solve import materials_of
 
-    config = _config(options)
+    config = config_of(options)
     record = chain.run(
         design_from(options.design),
         options.out,
@@ -163,25 +169,10 @@ def run_all(options: Namespace) -> int:
 
 
 def _use_threads(count: int) -> None:
-    if count < 1:
-        raise InputError(f"--threads = {count} must be at least 1.")
+    checked_threads(count)
     from pagd.actuation import use_threads
 
     use_threads(count)
-
-
-def _config(options: Namespace) -> dict[str, Any]:
-    """Return the configuration, with the options that stand for single keys put in."""
-    config = configuration.load(options.config)
-    given = {name: value for name, value in vars(options).items() if value is not None}
-    for name, value in given.items():
-        # The parser names an option that stands for a key of a section "section.key".
-        section, _, key = name.rpartition(".")
-        if section:
-            config[section][key] = value
-    if given.get("material_file"):
-        config["material_file"] = given["material_file"]
-    return configuration.checked(config, "command line")
 
 
 def _name(options: Namespace) -> str | None:

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import importlib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from pagd import __version__
+from pagd.cli.arguments import (
+    add_command,
+    add_config,
+    add_folder,
+    add_stage_options,
+    add_verbose,
+    override,
+)
+from pagd.cli.generative_parser import add_generative
 
 __all__ = ["make_parser"]
 
@@ -16,6 +23,7 @@ _EPILOG = """\
 examples:
   pagd run my_design.yaml --out my_design          all stages for a design of your own
   pagd design check my_design.yaml                 is it buildable?
+  pagd generate --mode mixed -n 100 --out mixed    new designs that bend and twist
   pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
   pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
 
@@ -43,13 +51,14 @@ def make_parser() -> argparse.ArgumentParser:
     _add_metrics(commands)
     _add_figures(commands)
     _add_gathering(commands)
+    add_generative(commands)
     return parser
 
 
 def _add_run(commands: Any) -> None:
-    run = _command(commands, "run", "run_all", "all stages for one design, in one folder")
+    run = add_command(commands, "run", "run_all", "all stages for one design, in one folder")
     run.add_argument("design", help="design: a YAML or JSON file, or JSON text")
-    _add_stage_options(run)
+    add_stage_options(run)
     _add_mesh_options(run)
     _add_solve_options(run)
 
@@ -61,30 +70,32 @@ def _add_design(commands: Any) -> None:
         ("check", "check_design", "tell every rule that the design breaks"),
         ("show", "show_design", "print the parameters and what follows from them"),
     ):
-        sub = _command(actions, action, handler, text)
+        sub = add_command(actions, action, handler, text)
         sub.add_argument("design", help="design: a YAML or JSON file, or JSON text")
-        _add_config(sub)
-        _add_verbose(sub)
+        add_config(sub)
+        add_verbose(sub)
 
 
 def _add_geometry(commands: Any) -> None:
-    geometry = _command(commands, "geometry", "geometry", "parameters → surfaces, by OpenSCAD")
+    geometry = add_command(commands, "geometry", "geometry", "parameters → surfaces, by OpenSCAD")
     geometry.add_argument(
         "--design", required=True, help="design: a YAML or JSON file, or JSON text"
     )
-    _add_stage_options(geometry)
+    add_stage_options(geometry)
 
 
 def _add_repair(commands: Any) -> None:
-    repair = _command(commands, "repair", "repair", "surfaces → sound surfaces, by pymeshlab")
-    _add_folder(repair, "geometry", required=True)
-    _add_stage_options(repair)
+    repair = add_command(commands, "repair", "repair", "surfaces → sound surfaces, by pymeshlab")
+    add_folder(repair, "geometry", required=True)
+    add_stage_options(repair)
 
 
 def _add_mesh(commands: Any) -> None:
-    mesh = _command(commands, "mesh", "mesh", "surfaces → quadratic tetrahedra with named surfaces")
-    _add_folder(mesh, "geometry", required=False)
-    _add_folder(mesh, "repair", required=False)
+    mesh = add_command(
+        commands, "mesh", "mesh", "surfaces → quadratic tetrahedra with named surfaces"
+    )
+    add_folder(mesh, "geometry", required=False)
+    add_folder(mesh, "repair", required=False)
     own = mesh.add_argument_group("surfaces of your own, instead of a design")
     own.add_argument("--body", type=Path, metavar="STL", help="solid above the paper, hollow")
     own.add_argument("--base", type=Path, metavar="STL", help="solid below the paper")
@@ -93,12 +104,12 @@ def _add_mesh(commands: Any) -> None:
     )
     own.add_argument("--name", help="name in the record (default: that of the body's file)")
     _add_mesh_options(mesh)
-    _add_stage_options(mesh)
+    add_stage_options(mesh)
 
 
 def _add_mesh_options(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("mesh (instead of the configuration's values)")
-    _override(group, "mesh", "size_mm", float, "edge length of the tetrahedra")
+    override(group, "mesh", "size_mm", float, "edge length of the tetrahedra")
     group.add_argument(
         "--meshers",
         dest="mesh.meshers",
@@ -106,11 +117,13 @@ def _add_mesh_options(command: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="gmsh, ftetwild or module:class, in the order they are tried",
     )
-    _override(group, "mesh", "time_limit_s", float, "a mesher is ended after this time")
+    override(group, "mesh", "time_limit_s", float, "a mesher is ended after this time")
 
 
 def _add_solve(commands: Any) -> None:
-    solve = _command(commands, "solve", "solve", "free actuation: pressure from 0 to the maximum")
+    solve = add_command(
+        commands, "solve", "solve", "free actuation: pressure from 0 to the maximum"
+    )
     solve.add_argument(
         "--mesh",
         type=Path,
@@ -119,7 +132,7 @@ def _add_solve(commands: Any) -> None:
     )
     solve.add_argument("--name", help="name in the record (default: that of the mesh)")
     _add_solve_options(solve)
-    _add_stage_options(solve)
+    add_stage_options(solve)
 
 
 def _add_solve_options(command: argparse.ArgumentParser) -> None:
@@ -140,7 +153,7 @@ def _add_solve_options(command: argparse.ArgumentParser) -> None:
         metavar="P",
         help="pressure at the end",
     )
-    _override(group, "solve", "element", str, "taylor_hood or element_pressure")
+    override(group, "solve", "element", str, "taylor_hood or element_pressure")
     group.add_argument(
         "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
     )
@@ -148,11 +161,13 @@ def _add_solve_options(command: argparse.ArgumentParser) -> None:
 
 
 def _add_metrics(commands: Any) -> None:
-    metrics = _command(commands, "metrics", "metrics", "states → trajectory, bending, twist, work")
+    metrics = add_command(
+        commands, "metrics", "metrics", "states → trajectory, bending, twist, work"
+    )
     for stage in ("geometry", "repair"):
-        _add_folder(metrics, stage, required=False)
+        add_folder(metrics, stage, required=False)
     for stage in ("mesh", "solve"):
-        _add_folder(metrics, stage, required=True)
+        add_folder(metrics, stage, required=True)
     metrics.add_argument(
         "--sections",
         type=int,
@@ -160,20 +175,20 @@ def _add_metrics(commands: Any) -> None:
         metavar="N",
         help="evenly spaced sections to follow where there is no design (default: %(default)s)",
     )
-    _add_stage_options(metrics)
+    add_stage_options(metrics)
 
 
 def _add_figures(commands: Any) -> None:
-    figures = _command(commands, "figures", "figures", "pictures of geometry, mesh and shapes")
+    figures = add_command(commands, "figures", "figures", "pictures of geometry, mesh and shapes")
     figures.add_argument(
         "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
     )
-    _add_stage_options(figures)
+    add_stage_options(figures)
 
 
 def _add_gathering(commands: Any) -> None:
-    summary = _command(commands, "summary", "summary", "tables of designs: one row a design")
-    page = _command(commands, "page", "page", "page of designs: open it in a browser")
+    summary = add_command(commands, "summary", "summary", "tables of designs: one row a design")
+    page = add_command(commands, "page", "page", "page of designs: open it in a browser")
     for command, out in ((summary, "folder of the tables"), (page, "HTML file to write")):
         command.add_argument(
             "design_folders",
@@ -183,57 +198,10 @@ def _add_gathering(commands: Any) -> None:
             help="folder with a design's stage folders",
         )
         command.add_argument("--out", type=Path, required=True, help=out)
-        _add_verbose(command)
-
-
-def _command(commands: Any, name: str, handler: str, text: str) -> argparse.ArgumentParser:
-    command: argparse.ArgumentParser = commands.add_parser(
-        name, help=text, description=text[0].upper() + text[1:] + "."
+        add_verbose(command)
+    summary.add_argument(
+        "--dataset",
+        type=Path,
+        metavar="DIR",
+        help="folder of stage dataset: also tell how far each design is from the nearest in it",
     )
-    command.set_defaults(handler=_lazy(handler))
-    return command
-
-
-def _lazy(handler: str) -> Callable[[argparse.Namespace], int]:
-    def call(options: argparse.Namespace) -> int:
-        module = importlib.import_module("pagd.cli.commands")
-        code: int = getattr(module, handler)(options)
-        return code
-
-    return call
-
-
-def _add_folder(command: argparse.ArgumentParser, stage: str, *, required: bool) -> None:
-    command.add_argument(
-        f"--{stage}", type=Path, required=required, metavar="DIR", help=f"folder of stage {stage}"
-    )
-
-
-def _override(group: Any, section: str, key: str, kind: type, text: str) -> None:
-    option = f"--{key.replace('_', '-')}"
-    group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar="VALUE", help=text)
-
-
-def _add_stage_options(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--out", type=Path, required=True, metavar="DIR", help="folder to make or replace"
-    )
-    command.add_argument(
-        "--keep-going",
-        action="store_true",
-        help="exit with 0 also when the design fails as designs may: its record tells",
-    )
-    _add_config(command)
-    _add_verbose(command)
-
-
-def _add_config(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--config",
-        metavar="FILE",
-        help="configuration: a YAML file or JSON text; what it lacks keeps its default",
-    )
-
-
-def _add_verbose(command: argparse.ArgumentParser) -> None:
-    command.add_argument("-v", "--verbose", action="store_true", help="say more")

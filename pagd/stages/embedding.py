@@ -19,7 +19,7 @@ from pagd.stages.dataset import digest_of, load_dataset
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import Column, read_table, write_table
 
-__all__ = ["POINTS_NAME", "load_embedding", "run"]
+__all__ = ["POINTS_NAME", "check_perplexity", "load_embedding", "new_embedding", "run"]
 
 POINTS_NAME = "points.parquet"
 
@@ -45,11 +45,11 @@ def run(dataset: Path, out: Path, config: Mapping[str, Any], *, threads: int = 1
     """
     designs = load_dataset(dataset)
     settings = config["embedding"]
-    _check_perplexity(settings, len(designs))
+    check_perplexity(settings, len(designs), "the number of designs")
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("fit"):
-            embedding = _make(settings, threads).fit(designs, settings["seed"])
+            embedding = new_embedding(settings, threads).fit(designs, settings["seed"])
         _write(embedding, folder)
         with meter.part("quality"):
             quality = quality_of(embedding, seed=settings["seed"])
@@ -86,11 +86,22 @@ def load_embedding(dataset: Path, embedding: Path, *, threads: int = 1) -> Embed
         )
     columns = read_table(embedding / POINTS_NAME)
     points = np.column_stack([values for name, values in columns.items() if name != "design_id"])
-    made = _make(record.configuration["embedding"], threads)
+    made = new_embedding(record.configuration["embedding"], threads)
     return made.restore(load_dataset(dataset), _contiguous(points))
 
 
-def _make(settings: Mapping[str, Any], threads: int) -> Embedding:
+def check_perplexity(settings: Mapping[str, Any], count: int, what: str) -> None:
+    """Refuse a perplexity that is too large for a number of designs; ``what`` names it."""
+    # Beyond that, t-SNE would quietly take a smaller one.
+    if settings["method"] == "tsne" and settings["perplexity"] > count / 3:
+        raise InputError(
+            f"embedding.perplexity = {settings['perplexity']:g} must be at most a third of "
+            f"{what}, {count}."
+        )
+
+
+def new_embedding(settings: Mapping[str, Any], threads: int = 1) -> Embedding:
+    """Return the embedding, not fitted, that the section ``embedding`` asks for."""
     embedding = make_embedding(settings)
     if hasattr(embedding, "threads"):
         embedding.threads = threads
@@ -99,15 +110,6 @@ def _make(settings: Mapping[str, Any], threads: int) -> Embedding:
 
 def _contiguous(points: NDArray[Any]) -> NDArray[np.float64]:
     return np.ascontiguousarray(points, dtype=np.float64)
-
-
-def _check_perplexity(settings: Mapping[str, Any], count: int) -> None:
-    # Beyond that, t-SNE would quietly take a smaller one.
-    if settings["method"] == "tsne" and settings["perplexity"] > count / 3:
-        raise InputError(
-            f"embedding.perplexity = {settings['perplexity']:g} must be at most a third of the "
-            f"number of designs, {count}."
-        )
 
 
 def _write(embedding: Embedding, folder: Path) -> None:

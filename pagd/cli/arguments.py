@@ -1,0 +1,85 @@
+"""Arguments that several subcommands share."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+__all__ = [
+    "add_command",
+    "add_config",
+    "add_folder",
+    "add_out",
+    "add_stage_options",
+    "add_verbose",
+    "override",
+]
+
+
+def add_command(commands: Any, name: str, handler: str, text: str) -> argparse.ArgumentParser:
+    """Add a subcommand; its handler is a function of ``commands``, or ``module:function``."""
+    command: argparse.ArgumentParser = commands.add_parser(
+        name, help=text, description=text[0].upper() + text[1:] + "."
+    )
+    command.set_defaults(handler=_lazy(handler))
+    return command
+
+
+def _lazy(handler: str) -> Callable[[argparse.Namespace], int]:
+    home, _, function = handler.rpartition(":")
+
+    def call(options: argparse.Namespace) -> int:
+        module = importlib.import_module(f"pagd.cli.{home or 'commands'}")
+        code: int = getattr(module, function)(options)
+        return code
+
+    return call
+
+
+def add_folder(command: argparse.ArgumentParser, stage: str, *, required: bool) -> None:
+    """Add the option that names the folder of a stage before."""
+    command.add_argument(
+        f"--{stage}", type=Path, required=required, metavar="DIR", help=f"folder of stage {stage}"
+    )
+
+
+def override(group: Any, section: str, key: str, kind: type, text: str) -> None:
+    """Add an option that stands for a key of the configuration."""
+    option = f"--{key.replace('_', '-')}"
+    group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar="VALUE", help=text)
+
+
+def add_stage_options(command: argparse.ArgumentParser) -> None:
+    """Add what every stage of one design takes."""
+    add_out(command)
+    command.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="exit with 0 also when the design fails as designs may: its record tells",
+    )
+    add_config(command)
+    add_verbose(command)
+
+
+def add_out(command: argparse.ArgumentParser) -> None:
+    """Add the option of the stage's own folder."""
+    command.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder to make or replace"
+    )
+
+
+def add_config(command: argparse.ArgumentParser) -> None:
+    """Add the option of the configuration."""
+    command.add_argument(
+        "--config",
+        metavar="FILE",
+        help="configuration: a YAML file or JSON text; what it lacks keeps its default",
+    )
+
+
+def add_verbose(command: argparse.ArgumentParser) -> None:
+    """Add the option to say more."""
+    command.add_argument("-v", "--verbose", action="store_true", help="say more")

@@ -1,0 +1,117 @@
+"""The arguments of the generative half: data set, embedding, generator, diversity, selection."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from pagd.cli.arguments import (
+    add_command,
+    add_config,
+    add_folder,
+    add_out,
+    add_verbose,
+    override,
+)
+
+__all__ = ["add_generative"]
+
+
+def add_generative(commands: Any) -> None:
+    """Add the subcommands that work on many designs at once."""
+    _add_dataset(commands)
+    _add_embed(commands)
+    _add_generate(commands)
+    _add_diversity(commands)
+    _add_select(commands)
+
+
+def _add_dataset(commands: Any) -> None:
+    command = add_command(
+        commands, "dataset", "generative:dataset", "training designs: random, and around known ones"
+    )
+    group = _overrides(command)
+    override(group, "dataset", "size", int, "number of designs")
+    override(group, "dataset", "sampling", str, "random, sobol or latin_hypercube")
+    override(group, "dataset", "seed", int, "seed of all draws")
+    _add_set_options(command)
+
+
+def _add_embed(commands: Any) -> None:
+    command = add_command(
+        commands, "embed", "generative:embed", "training designs → places in a reduced space"
+    )
+    add_folder(command, "dataset", required=True)
+    group = _overrides(command)
+    override(group, "embedding", "method", str, "tsne, pca or none")
+    override(group, "embedding", "perplexity", float, "effective number of neighbours in t-SNE")
+    override(group, "embedding", "seed", int, "seed of t-SNE")
+    _add_threads(command)
+    _add_set_options(command)
+
+
+def _add_generate(commands: Any) -> None:
+    command = add_command(
+        commands, "generate", "generative:generate", "new designs, valid and none a copy"
+    )
+    # Without them they are made, in the folder of the command.
+    add_folder(command, "dataset", required=False)
+    add_folder(command, "embedding", required=False)
+    command.add_argument(
+        "--mode",
+        choices=("bending", "twisting", "mixed"),
+        help="take designs of this mode only (default: as they come)",
+    )
+    group = _overrides(command)
+    for names, key, kind, text in (
+        (("-n", "--designs"), "designs", int, "number of designs"),
+        (("--generator",), "method", str, "gmm, gmm_plain, gmm_full, kde, random or resample"),
+        (("--seed",), "seed", int, "seed of the fit and the draws"),
+    ):
+        group.add_argument(*names, dest=f"generator.{key}", type=kind, metavar="VALUE", help=text)
+    _add_threads(command)
+    _add_set_options(command)
+
+
+def _add_diversity(commands: Any) -> None:
+    command = add_command(
+        commands, "diversity", "generative:diversity", "how new and varied, beside other generators"
+    )
+    for stage in ("dataset", "embedding", "generated"):
+        add_folder(command, stage, required=True)
+    override(_overrides(command), "diversity", "seed", int, "seed of all draws")
+    _add_threads(command)
+    _add_set_options(command)
+
+
+def _add_select(commands: Any) -> None:
+    command = add_command(
+        commands,
+        "select",
+        "generative:select",
+        "generated designs to simulate, far from each other",
+    )
+    for stage in ("dataset", "generated"):
+        add_folder(command, stage, required=True)
+    group = _overrides(command)
+    group.add_argument(
+        "-n", "--designs", dest="selection.designs", type=int, metavar="VALUE", help="how many"
+    )
+    override(group, "selection", "seed", int, "seed of the first choice")
+    _add_set_options(command)
+
+
+def _overrides(command: argparse.ArgumentParser) -> Any:
+    return command.add_argument_group("instead of the configuration's values")
+
+
+def _add_threads(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--threads", type=int, default=1, metavar="N", help="threads of t-SNE (default: 1)"
+    )
+
+
+def _add_set_options(command: argparse.ArgumentParser) -> None:
+    add_out(command)
+    add_config(command)
+    add_verbose(command)

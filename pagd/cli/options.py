@@ -1,0 +1,32 @@
+"""What the options of a subcommand say together: the configuration, a number of threads."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from pagd import config as configuration
+from pagd.errors import InputError
+
+__all__ = ["checked_threads", "config_of"]
+
+
+def config_of(options: Namespace) -> dict[str, Any]:
+    """Return the configuration, with the options that stand for single keys put in."""
+    config = configuration.load(options.config)
+    given = {name: value for name, value in vars(options).items() if value is not None}
+    for name, value in given.items():
+        # The parser names an option that stands for a key of a section "section.key".
+        section, _, key = name.rpartition(".")
+        if section:
+            config[section][key] = value
+    if given.get("material_file"):
+        config["material_file"] = given["material_file"]
+    return configuration.checked(config, "command line")
+
+
+def checked_threads(count: int) -> int:
+    """Return a number of threads; ``InputError`` if it is none."""
+    if count < 1:
+        raise InputError(f"--threads = {count} must be at least 1.")
+    return count
