@@ -18,7 +18,13 @@ __all__ = ["FEW", "Entry", "Line", "by_mode", "line_looks", "read_entries"]
 FEW: Final = 4
 # Designs that others have built or simulated come first and carry their names.
 _KNOWN = ("table2", "published")
-_DASHES: Final = ("-", (0, (5.0, 2.0)), (0, (1.5, 1.5)), (0, (6.0, 2.0, 1.5, 2.0)))
+# Dashes as matplotlib and as plotly call them.
+_DASHES: Final[tuple[tuple[Any, str], ...]] = (
+    ("-", "solid"),
+    ((0, (5.0, 2.0)), "dash"),
+    ((0, (1.5, 1.5)), "dot"),
+    ((0, (6.0, 2.0, 1.5, 2.0)), "dashdot"),
+)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -69,10 +75,11 @@ class Entry:
 
 
 class Line(NamedTuple):
-    """Colour and matplotlib line style of one design among others."""
+    """Colour and line style of one design among others: for matplotlib, and for plotly."""
 
     colour: str
     dash: Any
+    script: str
 
 
 def read_entries(folders: Iterable[Path]) -> list[Entry]:
@@ -100,6 +107,6 @@ def line_looks(names: Sequence[str]) -> dict[str, Line]:
     colours = design_colours(names)
     distinct = len(set(colours.values())) or 1
     return {
-        name: Line(colours[name], _DASHES[i // distinct % len(_DASHES)])
+        name: Line(colours[name], *_DASHES[i // distinct % len(_DASHES)])
         for i, name in enumerate(names)
     }

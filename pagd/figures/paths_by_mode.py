@@ -115,7 +115,7 @@ def _twist(path: Path3D) -> FloatArray:
 
 def _draw_path(axes: Axes, member: Member, axis: int) -> None:
     """Draw the way of the tip and the centre line at the highest pressure."""
-    colour, dash = member.line
+    colour, dash, _ = member.line
     positions = member.path.positions
     x, y = positions[-1, :, 0], positions[-1, :, axis]
     axes.plot(x, y, color=colour, linewidth=0.7, alpha=0.4)
@@ -126,7 +126,7 @@ def _draw_path(axes: Axes, member: Member, axis: int) -> None:
 
 
 def _draw_tip_angles(axes: Axes, members: Sequence[Member], angle: Angle) -> None:
-    for name, path, (colour, dash), labelled in members:
+    for name, path, (colour, dash, _), labelled in members:
         width = 1.8 if labelled else 1.1
         values = angle(path)[:, -1]
         axes.plot(
@@ -136,7 +136,7 @@ def _draw_tip_angles(axes: Axes, members: Sequence[Member], angle: Angle) -> Non
 
 
 def _draw_joint_angles(axes: Axes, members: Sequence[Member], angle: Angle) -> None:
-    for name, path, (colour, dash), labelled in members:
+    for name, path, (colour, dash, _), labelled in members:
         joints = np.diff(angle(path)[-1])
         number = np.arange(1, len(joints) + 1)
         width = 1.8 if labelled else 1.1

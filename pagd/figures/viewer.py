@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import zlib
 from typing import Any
 
 import numpy as np
@@ -28,8 +29,10 @@ def viewer_data(states: States) -> dict[str, Any]:
     """Return the skin of a design in all states.
 
     Keys: pressure_kPa; vertices (their number v); triangles (t, 3) and edges (e, 2), vertex
-    numbers; positions (p, 3, v) in steps of step_mm; strain (p, v) from 0 to 255 for 0 to
-    top. Arrays are little-endian integers in base64, triangles and edges of index_bits.
+    numbers; rest (3, v) and change (p − 1, 3, v), in steps of step_mm: positions without
+    pressure, and what `_changes` leaves of their displacements; strain (p, v) from 0 to 255 for 0
+    to top. Arrays are little-endian integers, deflated, in base64; triangles and edges of
+    index_bits.
     """
     skin = skin_of(states.mesh)
     if len(skin.triangles) > _MANY:
@@ -41,6 +44,7 @@ def viewer_data(states: States) -> dict[str, Any]:
     strain = np.stack([skin.scalars(e) for e in states.strain])[:, source]
     step = max(_STEP_MM, float(np.abs(points).max()) / _LARGEST)
     top = max(float(np.percentile(strain[-1], 99.0)), 1e-3)
+    steps = np.rint(np.moveaxis(points, 2, 1) / step)
     # The edges go by any of the copies of their vertices.
     copy = np.zeros(len(skin.nodes), dtype=np.int64)
     copy[source] = np.arange(len(source))
@@ -52,7 +56,8 @@ def viewer_data(states: States) -> dict[str, Any]:
         "triangles": _packed(triangles, f"<u{bits // 8}"),
         "edges": _packed(copy[edges], f"<u{bits // 8}"),
         "step_mm": step,
-        "positions": _packed(np.rint(np.moveaxis(points, 2, 1) / step), "<i2"),
+        "rest": _packed(steps[0], "<i2"),
+        "change": _packed(_changes(steps[1:] - steps[0]), "<i2"),
         "top": top,
         "strain": _packed(np.rint(np.clip(strain / top, 0.0, 1.0) * 255.0), "<u1"),
     }
@@ -75,7 +80,18 @@ def _rounded(values: FloatArray) -> list[Any]:
 
 
 def _packed(values: NDArray[Any], kind: str) -> str:
-    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
+    raw = np.ascontiguousarray(values, dtype=kind).tobytes()
+    return base64.b64encode(zlib.compress(raw, 9)).decode("ascii")
+
+
+def _changes(displacement: FloatArray) -> FloatArray:
+    """Return how much each displacement (p, 3, v) departs from the course of the two before it.
+
+    The numbers are small, and deflate to half. Two running sums over the states undo it.
+    """
+    return np.asarray(
+        np.diff(displacement, n=2, axis=0, prepend=np.zeros((2, *displacement.shape[1:])))
+    )
 
 
 def _split_along(edges: IntArray, triangles: IntArray) -> tuple[IntArray, IntArray]:

@@ -1,0 +1,128 @@
+// ---- trajectories and angles of all designs -------------------------------------------------
+
+function curve(design, x, y, more) {
+  return {
+    type: "scatter",
+    mode: "lines+markers",
+    name: design.name,
+    x,
+    y,
+    line: { color: design.colour, width: 2, dash: design.dash },
+    marker: { color: design.colour, size: 6 },
+    ...more,
+  };
+}
+
+// The designs of one mode in their own colours, or all in the colours of their modes.
+class Paths {
+  constructor(designs) {
+    this.designs = designs;
+    this.group = "";
+    this.drawGroups();
+    this.drawKey();
+    this.draw();
+  }
+
+  get grouped() {
+    return content.groups.length > 0;
+  }
+
+  get shown() {
+    const chosen = this.designs.filter((design) => !this.group || design.mode === this.group);
+    if (!this.grouped || this.group) return chosen;
+    return chosen.map((d) => ({ ...d, dash: "solid", colour: modeColour(d.mode) }));
+  }
+
+  drawGroups() {
+    if (!this.grouped) return;
+    const buttons = ["", ...content.groups].map((group) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = group || "all, by mode";
+      button.setAttribute("aria-pressed", group === this.group);
+      button.addEventListener("click", () => this.choose(group, button));
+      return button;
+    });
+    document.getElementById("groups").replaceChildren(...buttons);
+  }
+
+  choose(group, button) {
+    this.group = group;
+    for (const other of button.parentElement.children) {
+      other.setAttribute("aria-pressed", other === button);
+    }
+    this.drawKey();
+    this.redraw.forEach((draw) => draw());
+  }
+
+  // One key for all plots, as text of the page: it wraps, and covers no title.
+  drawKey() {
+    const modes = this.grouped && !this.group;
+    const names = modes
+      ? content.groups.map((mode) => ({ name: mode, colour: modeColour(mode) }))
+      : this.shown;
+    const entries = names.map(({ name, colour, dash }) => {
+      const entry = document.createElement("li");
+      entry.textContent = name;
+      entry.style.setProperty("--design", colour);
+      if (dash && dash !== "solid") entry.className = "dashed";
+      return entry;
+    });
+    document.getElementById("key").replaceChildren(...entries);
+  }
+
+  draw() {
+    // Equal scales and margins that follow the labels would chase each other.
+    const fixed = { automargin: false };
+    const equal = { scaleanchor: "x", scaleratio: 1 };
+    this.redraw = [
+      ["side", "Tips from the side", 0, "x, mm"],
+      ["front", "Tips from the front", 1, "y, mm"],
+    ].map(([id, title, across, label]) =>
+      register(
+        document.getElementById("plot-" + id),
+        () => this.shown.flatMap((design) => this.path(design, across)),
+        () => flatLayout(title, axis(label, fixed), axis("z, mm", { ...equal, ...fixed }), plain),
+      ),
+    );
+    for (const [id, title] of [
+      ["bending", "Bending of the tip"],
+      ["twist", "Twist of the tip"],
+    ]) {
+      const angle = { hovertemplate: "%{x} kPa: %{y:.1f}°" };
+      const line = (d) => this.thin(curve(d, d.path.pressure_kPa, d.path[id + "_deg"], angle));
+      this.redraw.push(
+        register(
+          document.getElementById("plot-" + id),
+          () => this.shown.map(line),
+          () => flatLayout(title, axis("pressure, kPa"), axis("degrees"), plain),
+        ),
+      );
+    }
+  }
+
+  // Many lines are thin, and their markers small.
+  thin(trace) {
+    if (!this.grouped) return trace;
+    return { ...trace, line: { ...trace.line, width: 1.4 }, marker: { ...trace.marker, size: 4 } };
+  }
+
+  path(design, across) {
+    const lines = design.path.lines;
+    const last = lines[lines.length - 1];
+    const tip = (i) => lines.map((line) => line[i][line[i].length - 1]);
+    const shape = {
+      ...curve(design, last[across], last[2], { mode: "lines", hoverinfo: "skip" }),
+      line: { color: design.colour, width: this.grouped ? 3 : 6 },
+      opacity: 0.25,
+    };
+    const text = design.path.pressure_kPa.map((p) => p + " kPa");
+    const place = { text, hovertemplate: "%{text}<br>%{x} mm, %{y} mm" };
+    return [shape, this.thin(curve(design, tip(across), tip(2), place))];
+  }
+}
+
+function drawPaths() {
+  const designs = content.designs.filter((design) => design.path);
+  if (designs.length) new Paths(designs);
+}

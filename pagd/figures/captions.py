@@ -1,0 +1,47 @@
+"""What is written under the pictures of simulated designs: how each was made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+__all__ = ["OF_DESIGN", "TOGETHER"]
+
+_ANGLES = (
+    "Bending is the rotation about the width axis, positive towards the paper, and twist that about"
+    " the axis of the actuator, both summed over the joints between chambers, so that they pass"
+    " 180°."
+)
+
+#: Pictures of one design, in the order of the page.
+OF_DESIGN: Final[Mapping[str, str]] = {
+    "deformed": "Deformed shapes at rising pressure, undeformed in grey, by finite elements at"
+    " finite strain. Colour: largest principal logarithmic strain; its bar ends where 1 % of the"
+    " nodes are beyond.",
+    "geometry": "The drawn geometry, cut open along its middle, with the dimensions it was drawn"
+    " by.",
+    "mesh": "Quadratic tetrahedra, cut open down to the paper, with the surfaces that supports and"
+    " pressure act on, and the quality of the elements (scaled Jacobian).",
+}
+
+#: Pictures of all designs, in the order of the page.
+TOGETHER: Final[Mapping[str, str]] = {
+    "gallery": "Deformed shapes at the highest pressure each design reached, undeformed in grey"
+    " (Fig. 6 of the paper), all on one scale and seen from one side; each row has designs of one"
+    " mode where there are many. Colour: largest principal logarithmic strain at the nodes; a few"
+    " may be beyond the bar. What did not come to the full pressure is named below the angles.",
+    "trajectories": "Where the tips go under rising pressure, and centre lines (the paper, section"
+    " by section) at the highest pressure (Fig. 7 of the paper). A section lies where the mean"
+    " motion of its nodes takes it; equal scales in all panels.",
+    "angles": f"Bending and twist of the tips against pressure, and of every chamber at the highest"
+    f" pressure. {_ANGLES}",
+    "paths": "Where the tips go under rising pressure, a marker at every recorded pressure; wide"
+    " and pale: centre lines at the highest pressure. Point at a marker for its pressure.",
+    "bending_twist": f"Bending and twist of the tip of every simulated design, at the highest"
+    f" pressure it reached. {_ANGLES} Colour and shape: mode the design was drawn for; open:"
+    " Table 2 of the paper and published actuators; crosses: designs that did not end well. A click"
+    " opens the design.",
+    "novelty_bending": "Bending of the tip at the highest pressure against novelty, the distance to"
+    " the nearest training design in the space of standardised and one-hot parameters; 0: the"
+    " design is itself in the training set. Looks as in the plot of bending and twist.",
+}

@@ -1,0 +1,206 @@
+"""Data set, embedding, generator, novelty and diversity: facts and pictures in sections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Final
+
+from pagd.figures.page.markup import Section, data_table, escaped, facts
+from pagd.figures.page.pictures import pictures
+from pagd.figures.page.study import Study, captions_of, comparison_of, record_in
+from pagd.figures.style import number
+
+__all__ = ["SHOWN_ELSEWHERE", "comparison_table", "generative_sections"]
+
+#: Pictures of simulated designs, which the section on performance shows.
+SHOWN_ELSEWHERE: Final = ("feasibility", "bending_twist", "novelty_performance")
+_OF_EMBEDDING: Final = ("embedding",)
+_OF_GENERATOR: Final = ("mixture", "modes")
+
+
+def generative_sections(study: Study) -> list[Section]:
+    """Return the sections, empty where there are no results."""
+    captions = captions_of(study)
+
+    def shown(names: Iterable[str]) -> str:
+        return pictures(study.pictures, names, captions)
+
+    placed = (*_OF_EMBEDDING, *_OF_GENERATOR, *SHOWN_ELSEWHERE)
+    others = [name for name in captions if name not in placed]
+    return [
+        Section(
+            "dataset",
+            "Data set and embedding",
+            "".join([facts(_of_dataset(study) + _of_embedding(study)), shown(_OF_EMBEDDING)]),
+        ),
+        Section(
+            "generator",
+            "Generator and modes",
+            "".join([facts(_of_generator(study)), shown(_OF_GENERATOR)]),
+        ),
+        Section(
+            "diversity",
+            "Novelty and diversity",
+            "".join(
+                [facts(_of_novelty(study)), comparison_table(comparison_of(study)), shown(others)]
+            ),
+        ),
+    ]
+
+
+def comparison_table(content: Mapping[str, Any]) -> str:
+    """Return the comparison of generators as tables, one a space, generators in rows.
+
+    Parameters
+    ----------
+    content
+        ``rows`` with generator, space, mode, metric, value, low and high; ``metrics`` and
+        ``spaces``, what their names mean.
+    """
+    rows = [row for row in content.get("rows", []) if row.get("mode", "all") == "all"]
+    spaces = dict.fromkeys(str(row["space"]) for row in rows)
+    return "".join(_of_space(space, rows, content) for space in spaces)
+
+
+def _of_space(space: str, rows: Iterable[Mapping[str, Any]], content: Mapping[str, Any]) -> str:
+    found = {(r["generator"], r["metric"]): r for r in rows if r["space"] == space}
+    generators = dict.fromkeys(generator for generator, _ in found)
+    metrics = dict.fromkeys(metric for _, metric in found)
+    head = ["generator", *(str(metric).replace("_", " ") for metric in metrics)]
+    body = [
+        [str(generator).replace("_", " "), *(_value(found.get((generator, m))) for m in metrics)]
+        for generator in generators
+    ]
+    meaning = content.get("spaces", {}).get(space, "")
+    title = f"<h3>In the space: {escaped(space.replace('_', ' '))}</h3>"
+    note = f'<p class="note">{escaped(meaning)}.</p>' if meaning else ""
+    return title + note + data_table(head, body) + _meanings(metrics, content)
+
+
+def _meanings(metrics: Iterable[str], content: Mapping[str, Any]) -> str:
+    known = content.get("metrics", {})
+    rows = [(m.replace("_", " "), _meaning(known[m])) for m in metrics if m in known]
+    return (
+        f"<details><summary>How they are computed</summary>{facts(rows)}</details>" if rows else ""
+    )
+
+
+def _meaning(metric: Mapping[str, Any]) -> str:
+    better = metric.get("better")
+    words = [str(metric.get("description", ""))]
+    words += [f"{better} is better"] if better in ("higher", "lower") else []
+    interval = metric.get("interval")
+    words += [f"in brackets: {interval}"] if interval and interval != "none" else []
+    words += [f"source: {metric['source']}"] if metric.get("source") else []
+    return escaped("; ".join(words))
+
+
+def _value(row: Mapping[str, Any] | None) -> str:
+    if row is None or row.get("value") is None:
+        return "–"
+    low, high = row.get("low"), row.get("high")
+    interval = "" if low is None or high is None else f" [{_short(low)}, {_short(high)}]"
+    return _short(row["value"]) + interval
+
+
+def _short(value: float) -> str:
+    """Return three significant digits, or so many whole ones as there are."""
+    plain = f"{value:.3g}"
+    return plain.replace("-", "−") if "e" in plain else number(float(plain), _digits(plain))
+
+
+def _digits(plain: str) -> int:
+    return len(plain.partition(".")[2])
+
+
+def _of_dataset(study: Study) -> list[tuple[str, str]]:
+    record = record_in(study.dataset)
+    if record is None:
+        return []
+    found, setting = record.figures, record.configuration.get("dataset", {})
+    counts: Mapping[str, Mapping[str, int]] = found.get("counts", {})
+    kinds = {kind: sum(parts.values()) for kind, parts in counts.items()}
+    sources: dict[str, int] = {}
+    for parts in counts.values():
+        for source, count in parts.items():
+            sources[source] = sources.get(source, 0) + count
+    return [
+        ("training designs", _whole(found.get("size"))),
+        ("of each category", _counted(kinds)),
+        ("where from", _counted(sources)),
+        ("sampling", escaped(str(found.get("sampling", "")).replace("_", " "))),
+        ("valid at first draw", _acceptance(found)),
+        ("seed of the data set", str(setting.get("seed", ""))),
+    ]
+
+
+def _acceptance(figures: Mapping[str, Any]) -> str:
+    """Return the share of random designs that pass the rules, by category."""
+    rates = {kind: parts.get("random") for kind, parts in figures.get("acceptance", {}).items()}
+    return escaped(", ".join(f"{k} {_percent(v)}" for k, v in rates.items() if v is not None))
+
+
+def _of_embedding(study: Study) -> list[tuple[str, str]]:
+    record = record_in(study.embedding)
+    if record is None:
+        return []
+    found, setting = record.figures, record.configuration.get("embedding", {})
+    method = str(setting.get("method", ""))
+    perplexity = f", perplexity {setting['perplexity']:g}" if method == "tsne" else ""
+    names = {"tsne": "t-SNE", "pca": "principal components", "none": "none (full space)"}
+    return [
+        ("embedding", escaped(names.get(method, method) + perplexity)),
+        ("trustworthiness", _decimal(found.get("trustworthiness"))),
+        ("decoder: error of training designs", _decimal(found.get("round_trip_error"))),
+        ("decoder: error of designs left out", _decimal(found.get("left_out_error"))),
+        ("seed of the embedding", str(setting.get("seed", ""))),
+    ]
+
+
+def _of_generator(study: Study) -> list[tuple[str, str]]:
+    record = record_in(study.generated)
+    if record is None:
+        return []
+    found, setting = record.figures, record.configuration.get("generator", {})
+    shares = {mode: _percent(share) for mode, share in found.get("mode_share", {}).items()}
+    chosen = record_in(study.selection)
+    return [
+        ("generator", escaped(str(setting.get("method", "")).replace("_", " "))),
+        ("generated designs", _whole(found.get("designs"))),
+        ("share of each mode", escaped(", ".join(f"{m} {s}" for m, s in shares.items()))),
+        ("proposed", _whole(found.get("proposed"))),
+        ("refused", _counted(found.get("refused", {}))),
+        ("corrected by the limits", _counted(found.get("corrections", {}))),
+        ("chosen for simulation", _counted(chosen.figures.get("modes", {})) if chosen else ""),
+        ("seed of the generator", str(setting.get("seed", ""))),
+    ]
+
+
+def _of_novelty(study: Study) -> list[tuple[str, str]]:
+    record = record_in(study.generated)
+    found = record.figures if record else {}
+    return [
+        ("mean novelty, encoded space", _decimal(found.get("novelty_mean"))),
+        ("mean novelty, plane in the unit square", _decimal(found.get("novelty_plane_mean"), 4)),
+    ]
+
+
+def _counted(counts: Mapping[str, int]) -> str:
+    words = (f"{n:,} {_word(name)}" for name, n in counts.items() if n)
+    return escaped(", ".join(words) or ("none" if counts else ""))
+
+
+def _word(name: str) -> str:
+    return {"table2": "of Table 2"}.get(name, name.replace("_", " "))
+
+
+def _whole(value: int | None) -> str:
+    return "" if value is None else f"{value:,}"
+
+
+def _decimal(value: float | None, digits: int = 3) -> str:
+    return "" if value is None else number(value, digits)
+
+
+def _percent(share: float) -> str:
+    return f"{number(100.0 * share, 0)} %"
