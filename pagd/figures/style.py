@@ -35,6 +35,7 @@ __all__ = [
     "new_figure",
     "number",
     "origin_colour",
+    "origin_name",
     "save",
     "set_resolution",
 ]
@@ -157,6 +158,11 @@ def mode_look(mode: str) -> Look:
 def origin_colour(origin: str) -> str:
     """Return the colour of an origin; one that has none of its own gets green."""
     return ORIGIN_COLOURS.get(origin, _OTHER_ORIGIN)
+
+
+def origin_name(origin: str) -> str:
+    """Return an origin as people read it."""
+    return {"table2": "Table 2"}.get(origin, origin)
 
 
 def number(value: float, digits: int) -> str:

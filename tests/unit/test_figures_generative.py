@@ -427,11 +427,13 @@ def test_comparison_has_a_dot_a_generator_and_a_line_for_the_training_designs():
     rows = comparison(
         {"gmm": (0.6, 0.5, 0.7), "kde": (0.5, None, None), "training": (0.9, None, None)}
     )
-    (axes,) = comparison_figure(rows).axes
+    figure = comparison_figure(rows)
+    (axes,) = figure.axes
     dots = axes.collections[-1].get_offsets()
     np.testing.assert_array_equal(dots, [[0.6, 0], [0.5, 1]])
     assert [label.get_text() for label in axes.get_yticklabels()] == ["gmm", "kde"]
     assert axes.lines[0].get_xdata() == [0.9, 0.9]
+    assert legend_of(figure) == ["gmm: the one used", "training designs"]
     assert words_in(axes) == ["all parameters  more is better →"]
     ends = [segment[:, 0].tolist() for segment in axes.collections[0].get_segments()]
     assert ends == [[0.5, 0.7], [0.5, 0.5]]

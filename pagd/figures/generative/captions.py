@@ -44,7 +44,7 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         " Wasserstein barycentre of the two categories: EM alone finds only what the data set"
         " has, and so no mixed design.",
         "Upper right: the Bayesian information criterion of EM by number of Gaussians; it is least"
-        " with {least_bic}.",
+        " with {least_bic}. The K that is used counts the dashed one.",
         "Lower right: the share α of helical chambers of the {mixed} mixed designs out of"
         " {generated}.",
         "Generator {generator}, seed {generator_seed}.",

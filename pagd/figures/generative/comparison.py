@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pandas as pd
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from pagd.diversity.comparison import TRAINING
@@ -70,9 +71,9 @@ def comparison_figure(rows: pd.DataFrame) -> Figure:
         If there is no number among them.
     """
     found = _shown(rows)
-    if found.empty:
-        raise NothingToDraw("No generator has any measure.")
     generators = [name for name in dict.fromkeys(found["generator"]) if name != TRAINING]
+    if not generators:
+        raise NothingToDraw("No generator has any measure.")
     panels = list(found.groupby(["space", "metric"], sort=False))
     columns = min(_COLUMNS, len(panels))
     lines = -(-len(panels) // columns)
@@ -83,6 +84,7 @@ def comparison_figure(rows: pd.DataFrame) -> Figure:
         _head(panel, str(metric), str(space), str(part["better"].iloc[0]))
     for panel in axes[len(panels) :]:
         panel.set_axis_off()
+    _explain(figure, generators[0], TRAINING in set(found["generator"]))
     return figure
 
 
@@ -122,6 +124,14 @@ def _draw_measure(axes: Axes, part: pd.DataFrame, generators: Sequence[str]) -> 
     axes.set_ylim(len(generators) - 0.5, -0.5)
     axes.margins(x=0.12)
     axes.xaxis.set_major_locator(MaxNLocator(4))
+
+
+def _explain(figure: Figure, own: str, with_training: bool) -> None:
+    """Say under the panels what orange and dashed mean."""
+    entries = [Line2D([], [], color=_OWN, marker="o", linestyle="", label=f"{own}: the one used")]
+    if with_training:
+        entries.append(Line2D([], [], color=FAINT, linestyle="--", label="training designs"))
+    figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
 
 
 def _head(axes: Axes, metric: str, space: str, better: str) -> None:

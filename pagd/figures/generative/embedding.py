@@ -12,7 +12,7 @@ from pagd.figures.generative.labels import legend_below
 from pagd.figures.generative.plane import frame_axes, scatter_modes
 from pagd.figures.generative.projection import load_plane
 from pagd.figures.generative.results import GenerativePaths, settings_of
-from pagd.figures.style import new_figure, origin_colour, save
+from pagd.figures.style import new_figure, origin_colour, origin_name, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,9 +87,5 @@ def _scatter_origins(axes: Axes, training: pd.DataFrame) -> None:
             edgecolors="white" if known else "none",
             linewidths=0.6,
             zorder=5 if known else 2,
-            label=f"{_written(str(origin))} ({count:,})",
+            label=f"{origin_name(str(origin))} ({count:,})",
         )
-
-
-def _written(origin: str) -> str:
-    return {"table2": "Table 2"}.get(origin, origin)

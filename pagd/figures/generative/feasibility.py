@@ -19,6 +19,7 @@ from pagd.figures.style import (
     MODE_LOOKS,
     STATUS_COLOURS,
     new_figure,
+    origin_name,
     save,
 )
 
@@ -58,6 +59,7 @@ def feasibility_figure(performance: pd.DataFrame) -> Figure:
     _stack(by_mode, drawn.reindex(columns=statuses, fill_value=0))
     by_mode.set_title("status, by mode drawn")
     origins = counts_of(performance, "origin", "status")
+    origins = origins.rename(index=origin_name)
     _stack(by_origin, origins.reindex(columns=statuses, fill_value=0))
     by_origin.set_title("status, by origin")
     handles, labels = by_mode.get_legend_handles_labels()
