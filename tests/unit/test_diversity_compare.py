@@ -3,6 +3,8 @@ import json
 import numpy as np
 import pytest
 
+from pagd.dataset.frame import completed
+from pagd.dataset.make import make_dataset
 from pagd.diversity import (
     METRICS,
     SPACES,
@@ -13,6 +15,7 @@ from pagd.diversity import (
     hull_corners,
     places_of_mode,
 )
+from pagd.encoding import Encoder
 from pagd.errors import InputError
 
 SETTINGS = Settings(hull_designs=20, hull_repeats=15, sample=100, components=3)
@@ -157,6 +160,27 @@ def test_what_is_not_a_number_is_null_in_the_file() -> None:
     json.dumps(found.as_dict(), allow_nan=False)
 
 
-def test_places_of_mode() -> None:
-    names = ["L", "alpha", "N1", "mode_bending", "cross_section_rectangular"]
-    assert places_of_mode(names) == [1, 2, 3]
+def test_places_of_mode_in_encoded_designs() -> None:
+    designs = make_dataset(40, seed=1).designs
+    names = Encoder().fit(designs).get_feature_names_out()
+    assert {names[place] for place in places_of_mode(names)} == {
+        *("alpha", "N1", "N2", "mode_bending", "mode_twisting")
+    }
+
+
+def test_mixed_designs_are_far_from_training_designs_by_their_mode() -> None:
+    designs = make_dataset(200, seed=1).designs
+    twisting = designs[designs["mode"] == "twisting"]
+    half = twisting.assign(alpha=0.5)
+    mixed = completed(half, half["design_id"], "generated")
+    encoder = Encoder().fit(designs)
+    training, new = (
+        Candidate(encoded=encoder.transform(frame), modes=frame["mode"].to_numpy())
+        for frame in (designs, mixed)
+    )
+    places = places_of_mode(encoder.get_feature_names_out())
+    found = compare({"half": new}, training, SETTINGS, mode_places=places)
+    assert set(new.modes) == {"mixed"}
+    assert found.row("half", "mode_part")["value"] > 0.3
+    assert found.row("training", "mode_part")["value"] < 0.1
+    assert found.row("half", "novelty")["value"] > 1.0
