@@ -22,6 +22,7 @@ from pagd.figures.generative.comparison import comparison_figure
 from pagd.figures.generative.distributions import distance_in_deviations, distributions_figure
 from pagd.figures.generative.draw import CAPTIONS_NAME, PICTURES, draw_generative
 from pagd.figures.generative.embedding import SHOWN, embedding_figure
+from pagd.figures.generative.facts import facts_of
 from pagd.figures.generative.feasibility import feasibility_figure
 from pagd.figures.generative.hull import hull_figure
 from pagd.figures.generative.labels import label_points
@@ -583,9 +584,17 @@ def test_captions_say_only_what_is_known():
     assert not any("{" in text or "Seed" in text for text in unknown.values())
 
 
+def test_captions_know_what_the_configuration_says():
+    config = {"embedding": {"method": "pca", "seed": 4, "perplexity": 30.0}, "diversity": None}
+    found = texts.caption("embedding", texts.facts_of_settings(config))
+    assert "Method: principal components." in found
+    assert "Seed 4." in found
+    assert "erplexity" not in found
+
+
 def test_captions_carry_the_numbers_of_the_run(results):
-    found = texts.captions(texts.facts_of(GenerativePaths.under(results)))
-    assert "Perplexity 30." in found["embedding"]
+    found = texts.captions(facts_of(GenerativePaths.under(results)))
+    assert "Perplexity 30;" in found["embedding"]
     assert "Trustworthiness 0.910" in found["embedding"]
     assert "Seed 7." in found["embedding"]
     assert "all 120" in found["embedding"]

@@ -10,18 +10,7 @@ from collections.abc import Mapping
 from string import Formatter
 from typing import Any, Final
 
-import pandas as pd
-
-from pagd.figures.generative.results import (
-    GenerativePaths,
-    figures_of,
-    load_mixture,
-    settings_of,
-    table_or_none,
-)
-from pagd.figures.style import number
-
-__all__ = ["CAPTIONS", "caption", "captions", "facts_of", "facts_of_settings"]
+__all__ = ["CAPTIONS", "caption", "captions", "facts_of_settings", "written"]
 
 #: Name of the picture to the sentences below it, in the order of the page.
 CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -29,10 +18,10 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "The training designs in the reduced space (Fig. 4a of the paper): each has its 14"
         " numbers standardised and its categories one-hot.",
         "Method: {embedding}.",
-        "Perplexity {perplexity}.",
+        "Perplexity {perplexity}; neighbours matter in such a plane, distances between islands"
+        " do not.",
         "Left: a seeded choice of up to 1,000, by category; right: all {trained}, by where they"
         " come from, with published actuators as stars.",
-        "In a t-SNE plane neighbours matter, distances between islands do not.",
         "Trustworthiness {trustworthiness} (1: all neighbours are kept).",
         "Seed {embedding_seed}.",
     ),
@@ -42,9 +31,9 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "Ellipses: {gaussians} Gaussians at one and two standard deviations.",
         "The dashed one, with {bridge_weight} of the weight, is not fitted by EM but is the"
         " Wasserstein barycentre of the two categories: EM alone finds only what the data set"
-        " has, and so no mixed design.",
+        " has, and so no mixed design. It is counted in the K that is used.",
         "Upper right: the Bayesian information criterion of EM by number of Gaussians; it is least"
-        " with {least_bic}. The K that is used counts the dashed one.",
+        " with {least_bic}.",
         "Lower right: the share α of helical chambers of the {mixed} mixed designs out of"
         " {generated}.",
         "Generator {generator}, seed {generator_seed}.",
@@ -138,56 +127,15 @@ def facts_of_settings(settings: Mapping[str, Any]) -> dict[str, str]:
         "neighbours": diversity.get("neighbours"),
         "diversity_seed": diversity.get("seed"),
     }
-    return {key: _written(value) for key, value in known.items() if value is not None}
-
-
-def facts_of(paths: GenerativePaths) -> dict[str, str]:
-    """Return all facts that the results of a run know."""
-    settings: dict[str, Any] = {}
-    for folder in (paths.embedding, paths.generated, paths.diversity):
-        settings |= settings_of(folder)
-    measured = _counts(paths) | _mixture(paths)
-    measured["trustworthiness"] = figures_of(paths.embedding).get("trustworthiness")
-    written = {key: _written(value) for key, value in measured.items() if value is not None}
-    return facts_of_settings(settings) | written
-
-
-def _counts(paths: GenerativePaths) -> dict[str, Any]:
-    training = table_or_none(paths.dataset / "designs.parquet")
-    generated = table_or_none(paths.generated / "designs.parquet")
-    simulated = table_or_none(paths.performance)
-    return {
-        "trained": _length(training),
-        "generated": _length(generated),
-        "mixed": None if generated is None else int((generated["mode"] == "mixed").sum()),
-        "simulated": _length(simulated),
-        "succeeded": None if simulated is None else int((simulated["status"] == "ok").sum()),
-    }
-
-
-def _mixture(paths: GenerativePaths) -> dict[str, Any]:
-    content = load_mixture(paths)
-    weights, bridge, bic = (content.get(name) for name in ("weights", "bridge", "bic"))
-    return {
-        "gaussians": len(weights) if weights else None,
-        "bridge_weight": _percent(weights[bridge]) if weights and bridge is not None else None,
-        "least_bic": min(bic, key=bic.get) if bic else None,
-    }
-
-
-def _percent(share: float) -> str:
-    return f"{number(100.0 * share, 0)} %"
-
-
-def _length(frame: pd.DataFrame | None) -> int | None:
-    return None if frame is None else len(frame)
+    return {key: written(value) for key, value in known.items() if value is not None}
 
 
 def _needs(sentence: str) -> set[str]:
     return {name for _, name, _, _ in Formatter().parse(sentence) if name}
 
 
-def _written(value: Any) -> str:
+def written(value: Any) -> str:
+    """Return a fact as it stands in a caption."""
     if isinstance(value, float):
-        return number(value, 0 if value.is_integer() else 3)
+        return f"{value:,.0f}" if value.is_integer() else f"{value:,.3f}"
     return f"{value:,}" if isinstance(value, int) else str(value)

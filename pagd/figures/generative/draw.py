@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Final
 
 from pagd.figures.generative.bending_twist import draw_bending_twist
-from pagd.figures.generative.captions import captions, facts_of
+from pagd.figures.generative.captions import captions
 from pagd.figures.generative.comparison import draw_comparison
 from pagd.figures.generative.distributions import draw_distributions
 from pagd.figures.generative.embedding import draw_embedding
+from pagd.figures.generative.facts import facts_of
 from pagd.figures.generative.feasibility import draw_feasibility
 from pagd.figures.generative.hull import draw_hull
 from pagd.figures.generative.mixture import draw_mixture
