@@ -479,7 +479,7 @@ def test_bending_against_twist_names_known_designs_and_crosses_failed_ones():
     (axes,) = figure.axes
     assert points_in(axes) == 7
     assert set(words_in(axes)) == {"Table 2: bending", "Table 2: twisting", "gibbon_multi"}
-    assert heading(axes) == "bending and twist of 7 simulated designs (1 more moved nothing)"
+    assert heading(axes) == "bending and twist of 7 simulated designs (1 more gave no result)"
     # Only a cross is drawn in two strokes.
     crosses = [c for c in axes.collections if (c.get_paths()[0].codes == Path2D.MOVETO).sum() == 2]
     assert np.concatenate([c.get_offsets() for c in crosses]).tolist() == [[20.0, 10.0]]

@@ -65,4 +65,4 @@ def bending_twist_figure(performance: pd.DataFrame) -> Figure:
 def _count(performance: pd.DataFrame, found: pd.DataFrame) -> str:
     lost = len(performance) - len(found)
     words = f"{len(found):,} simulated design{'s' if len(found) != 1 else ''}"
-    return words + (f" ({lost:,} more moved nothing)" if lost else "")
+    return words + (f" ({lost:,} more gave no result)" if lost else "")

@@ -23,6 +23,8 @@ __all__ = ["draw_simulated", "legend_of_simulated", "name_known", "with_numbers"
 
 _KNOWN: Final = ("table2", "published")
 _MOST_NAMES: Final = 30
+# Areas of the points, points²; of more than a few designs they are smaller.
+_SIZE, _SIZE_KNOWN, _FEW = 36.0, 58.0, 150
 
 
 def with_numbers(frame: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
@@ -34,13 +36,16 @@ def with_numbers(frame: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
 
 def draw_simulated(axes: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
     """Draw the rows as points; see the module for what the shapes mean."""
+    size = _SIZE if len(frame) <= _FEW else _SIZE / 2
     for mode in modes_of(frame):
         rows = frame[frame["mode"] == mode]
         known, failed = rows["origin"].isin(_KNOWN), rows["status"] != "ok"
-        _points(axes, rows[~known & ~failed], x, y, mode, known=False)
-        _points(axes, rows[known & ~failed], x, y, mode, known=True)
+        _points(axes, rows[~known & ~failed], x, y, mode, size)
+        _points(axes, rows[known & ~failed], x, y, mode, _SIZE_KNOWN, known=True)
         crossed = rows[failed]
-        axes.scatter(crossed[x], crossed[y], s=34, c=mode_look(mode).colour, marker="x", zorder=3)
+        axes.scatter(
+            crossed[x], crossed[y], s=size, c=mode_look(mode).colour, marker="x", zorder=2.5
+        )
 
 
 def name_known(axes: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
@@ -63,12 +68,14 @@ def legend_of_simulated(figure: Figure, frame: pd.DataFrame) -> None:
     figure.legend(handles=entries, loc="outside lower center", ncols=len(entries))
 
 
-def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, mode: str, *, known: bool) -> None:
+def _points(
+    axes: Axes, rows: pd.DataFrame, x: str, y: str, mode: str, size: float, *, known: bool = False
+) -> None:
     look = mode_look(mode)
     axes.scatter(
         rows[x],
         rows[y],
-        s=58 if known else 36,
+        s=size,
         c="white" if known else look.colour,
         marker=look.marker,
         edgecolors=look.colour if known else "white",
