@@ -1,8 +1,10 @@
-# The method on one screen: designs → geometry → repair → mesh → solve → metrics → summary, pictures.
+# The method on one screen: data set → embedding → generator → novelty and diversity, selection;
+# selected and known designs → geometry → repair → mesh → solve → metrics → summary, pictures.
 #
-#   snakemake --profile profiles/default            everything
-#   snakemake --profile profiles/default summary    the tables only
-#   snakemake --profile profiles/default -n         what would be done, and why
+#   snakemake --profile profiles/default               everything
+#   snakemake --profile profiles/default generative    data set to diversity, with their pictures
+#   snakemake --profile profiles/default summary       the tables only
+#   snakemake --profile profiles/default -n            what would be done, and why
 
 from snakemake.utils import min_version
 
@@ -21,11 +23,14 @@ wildcard_constraints:
 
 localrules:
     all,
+    diversity_table,
     summary_tables,
     report_page,
 
 
 include: "workflow/rules/common.smk"  # configuration and designs, checked; input functions
+include: "workflow/rules/dataset.smk"  # training designs and their reduced space
+include: "workflow/rules/generate.smk"  # new designs, how new they are, which are simulated
 include: "workflow/rules/design.smk"  # one design: geometry, repair, mesh, solve, metrics
 include: "workflow/rules/summary.smk"  # all designs: tables of performance and trajectories
 include: "workflow/rules/publish.smk"  # pictures and the page

@@ -8,7 +8,14 @@ from shlex import quote
 from snakemake.exceptions import WorkflowError
 
 from pagd.catalogue import read_designs
-from pagd.config import checked, completed, material_as_json, part_as_json
+from pagd.config import (
+    check_study,
+    checked,
+    completed,
+    known_tables,
+    material_as_json,
+    part_as_json,
+)
 from pagd.errors import InputError
 from pagd.stages import STAGE_VERSIONS
 
@@ -20,25 +27,73 @@ def read_inputs(config, check):
     """The completed configuration, the designs by name and the materials by use."""
     try:
         whole = checked(config, "configuration") if check else completed(config)
+        if check:
+            check_study(whole, "configuration")
         designs = read_designs(whole["designs"], checked=check)
+        known = read_designs(known_tables(whole), checked=check)
         materials = {
             role: material_as_json(whole["material_file"], whole[role], role)
             for role in ("material", "paper")
         }
     except InputError as error:
         raise WorkflowError(str(error)) from None
-    return whole, designs, materials
+    return whole, designs, [design.as_json() for design in known.values()], materials
 
 
 # Jobs on a cluster parse this file again; what they read has passed the check already.
-CONFIG, DESIGNS, MATERIALS = read_inputs(config, check=workflow.is_main_process)
+CONFIG, TABLES, KNOWN, MATERIALS = read_inputs(config, check=workflow.is_main_process)
+
+# Without a selection the generative half has no part in a run.
+GENERATIVE = CONFIG["selection"]["designs"] > 0
+
+
+# What the page shows beside single designs, by the names that the page has for it.
+STUDY = {
+    "performance": "results/summary/performance.parquet",
+    "simulated": "results/figures/simulated",
+}
+if GENERATIVE:
+    STUDY |= {
+        "dataset": "results/dataset",
+        "embedding": "results/embedding",
+        "generated": "results/generated",
+        "selection": "results/selection",
+        "diversity": "results/summary/diversity.json",
+        "pictures": "results/figures/generative",
+    }
+
+
+def of_generative_half(path):
+    """The path as an input if the generative half is part of the run; nothing otherwise."""
+    return [path] if GENERATIVE else []
+
+
+def selected_designs(folder):
+    """The generated designs that the checkpoint has selected, by name."""
+    return read_designs({"generated": f"{folder}/designs.csv"}, checked=False)
+
+
+def all_designs():
+    """All designs to simulate, by name: those of the tables, then the selected ones.
+
+    Snakemake asks again when the checkpoint is done.
+    """
+    if not GENERATIVE:
+        return TABLES
+    return TABLES | selected_designs(checkpoints.select.get().output.selection)
+
+
+def selection_of_design(wildcards):
+    """What must be there before a generated design can start; a newer one is no reason to."""
+    return [] if wildcards.design in TABLES else ancient(rules.select.output.selection)
 
 
 def design_row(wildcards):
     """The design's own row: a change of it, and of no other row, runs the design again."""
-    if wildcards.design not in DESIGNS:
+    designs = TABLES if wildcards.design in TABLES else all_designs()
+    if wildcards.design not in designs:
         raise WorkflowError(f"No table of designs has a design named '{wildcards.design}'.")
-    return DESIGNS[wildcards.design].as_json()
+    return designs[wildcards.design].as_json()
 
 
 def config_of(stage):
@@ -54,12 +109,25 @@ def config_of_pictures():
 
 def of_all_designs(pattern):
     """The paths of a per-design output, for all designs, in the order of the tables."""
-    return expand(pattern, design=DESIGNS)
+
+    def paths(wildcards):
+        return expand(pattern, design=all_designs())
+
+    return paths
 
 
 def of_drawn_designs(pattern):
     """The same for the designs that pictures are drawn of."""
-    return of_all_designs(pattern)[: CONFIG["figures"]["drawn_designs"]]
+
+    def paths(wildcards):
+        return expand(pattern, design=list(all_designs())[: CONFIG["figures"]["drawn_designs"]])
+
+    return paths
+
+
+def folders_of(wildcards, input):
+    """The folders of the designs whose metrics are an input."""
+    return [str(Path(folder).parent) for folder in input.metrics]
 
 
 def design_folder(wildcards):

@@ -3,6 +3,8 @@
 
 
 rule geometry:
+    input:
+        selection=selection_of_design,
     output:
         geometry=directory("results/designs/{design}/geometry"),
     log:

@@ -4,7 +4,9 @@
 rule publish:
     input:
         of_drawn_designs("results/designs/{design}/figures"),
-        "results/figures",
+        "results/figures/together",
+        "results/figures/simulated",
+        of_generative_half("results/figures/generative"),
         "results/report/index.html",
 
 
@@ -49,7 +51,7 @@ rule pictures_together:
         metrics=of_drawn_designs(rules.metrics.output.metrics),
     output:
         pictures=report(
-            directory("results/figures"),
+            directory("results/figures/together"),
             patterns=["{picture}.png"],
             caption="../report/together.rst",
             category="All designs",
@@ -65,11 +67,68 @@ rule pictures_together:
     params:
         version=STAGE_VERSIONS["figures"],
         resolution_dpi=CONFIG["figures"]["resolution_dpi"],
-        designs=of_drawn_designs("results/designs/{design}"),
+        designs=folders_of,
     message:
         "Draw the designs together: shapes, trajectories and angles."
     script:
         "../scripts/pictures_together.py"
+
+
+rule pictures_simulated:
+    input:
+        performance=rules.summary_tables.output.performance,
+    output:
+        pictures=report(
+            directory("results/figures/simulated"),
+            patterns=["{picture}.png"],
+            caption="../report/generative.rst",
+            category="All designs",
+            labels={"picture": "{picture}"},
+        ),
+    log:
+        "results/logs/pictures_simulated.log",
+    benchmark:
+        "results/benchmarks/pictures_simulated.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        version=STAGE_VERSIONS["generative_figures"],
+        resolution_dpi=CONFIG["figures"]["resolution_dpi"],
+    message:
+        "Draw what became of the simulated designs."
+    script:
+        "../scripts/pictures_generative.py"
+
+
+rule pictures_generative:
+    input:
+        dataset=rules.dataset.output.dataset,
+        embedding=rules.embedding.output.embedding,
+        generated=rules.generate.output.generated,
+        diversity=rules.diversity.output.diversity,
+    output:
+        pictures=report(
+            directory("results/figures/generative"),
+            patterns=["{picture}.png"],
+            caption="../report/generative.rst",
+            category="Generated designs",
+            labels={"picture": "{picture}"},
+        ),
+    log:
+        "results/logs/pictures_generative.log",
+    benchmark:
+        "results/benchmarks/pictures_generative.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        version=STAGE_VERSIONS["generative_figures"],
+        resolution_dpi=CONFIG["figures"]["resolution_dpi"],
+    message:
+        "Draw embedding, mixture, hulls, and the comparison of generators."
+    script:
+        "../scripts/pictures_generative.py"
 
 
 rule report_page:
@@ -79,6 +138,7 @@ rule report_page:
         metrics=of_drawn_designs(rules.metrics.output.metrics),
         figures=of_drawn_designs(rules.figures.output.figures),
         pictures=rules.pictures_together.output.pictures,
+        study=list(STUDY.values()),
     output:
         page="results/report/index.html",
     log:
@@ -90,7 +150,8 @@ rule report_page:
         runtime=10,
     params:
         version=STAGE_VERSIONS["report"],
-        designs=of_drawn_designs("results/designs/{design}"),
+        designs=folders_of,
+        study=STUDY,
     message:
         "Write the page: results/report/index.html."
     script:

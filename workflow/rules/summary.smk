@@ -6,11 +6,16 @@ rule summary:
         "results/summary/performance.parquet",
         "results/summary/trajectories.parquet",
         "results/summary/summary.csv",
+        of_generative_half("results/summary/diversity.json"),
+        # Designs of the tables need not wait until others are selected.
+        expand(rules.metrics.output.metrics, design=TABLES),
 
 
 rule summary_tables:
     input:
+        geometry=of_all_designs(rules.geometry.output.geometry),
         metrics=of_all_designs(rules.metrics.output.metrics),
+        dataset=of_generative_half(rules.dataset.output.dataset),
     output:
         performance="results/summary/performance.parquet",
         trajectories="results/summary/trajectories.parquet",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
@@ -14,13 +15,15 @@ __all__ = ["SHOWN_ELSEWHERE", "comparison_table", "generative_sections"]
 
 #: Pictures of simulated designs, which the section on performance shows.
 SHOWN_ELSEWHERE: Final = ("feasibility", "bending_twist", "novelty_performance")
+# Measures below are rounding errors.
+_NOTHING: Final = 1e-9
 _OF_EMBEDDING: Final = ("embedding",)
 _OF_GENERATOR: Final = ("mixture", "modes")
 
 
 def generative_sections(study: Study) -> list[Section]:
     """Return the sections, empty where there are no results."""
-    captions = captions_of(study)
+    captions = captions_of(study.pictures)
 
     def shown(names: Iterable[str]) -> str:
         return pictures(study.pictures, names, captions)
@@ -54,17 +57,23 @@ def comparison_table(content: Mapping[str, Any]) -> str:
     Parameters
     ----------
     content
-        ``rows`` with generator, space, mode, metric, value, low and high; ``metrics`` and
-        ``spaces``, what their names mean.
+        ``generator``, the configured one; ``rows`` with generator, space, mode, metric, value,
+        low and high; ``metrics`` and ``spaces``, what their names mean.
     """
     rows = [row for row in content.get("rows", []) if row.get("mode", "all") == "all"]
-    spaces = dict.fromkeys(str(row["space"]) for row in rows)
-    return "".join(_of_space(space, rows, content) for space in spaces)
+    there = dict.fromkeys(str(row["space"]) for row in rows)
+    spaces = [*(s for s in content.get("spaces", {}) if s in there), *there]
+    return "".join(_of_space(space, rows, content) for space in dict.fromkeys(spaces))
 
 
 def _of_space(space: str, rows: Iterable[Mapping[str, Any]], content: Mapping[str, Any]) -> str:
     found = {(r["generator"], r["metric"]): r for r in rows if r["space"] == space}
-    generators = dict.fromkeys(generator for generator, _ in found)
+    own = content.get("generator")
+    # The configured generator first, the yardstick last.
+    generators = sorted(
+        dict.fromkeys(generator for generator, _ in found),
+        key=lambda name: (name != own, name == "training"),
+    )
     metrics = dict.fromkeys(metric for _, metric in found)
     head = ["generator", *(str(metric).replace("_", " ") for metric in metrics)]
     body = [
@@ -105,12 +114,9 @@ def _value(row: Mapping[str, Any] | None) -> str:
 
 def _short(value: float) -> str:
     """Return three significant digits, or so many whole ones as there are."""
-    plain = f"{value:.3g}"
-    return plain.replace("-", "−") if "e" in plain else number(float(plain), _digits(plain))
-
-
-def _digits(plain: str) -> int:
-    return len(plain.partition(".")[2])
+    if not value or abs(value) < _NOTHING:
+        return "0"
+    return number(value, max(2 - math.floor(math.log10(abs(value))), 0))
 
 
 def _of_dataset(study: Study) -> list[tuple[str, str]]:

@@ -24,7 +24,8 @@ class Study:
     dataset, embedding, generated, selection: folders of these stages, with their record.json.
     diversity: JSON file of the comparison of generators.
     performance: Parquet table of all simulated designs, with their novelty.
-    pictures: folder with NAME.png and captions.json.
+    pictures: folder with NAME.png and captions.json, of data set, generator and diversity.
+    simulated: the same of simulated designs.
     """
 
     dataset: Path | None = None
@@ -34,6 +35,7 @@ class Study:
     diversity: Path | None = None
     performance: Path | None = None
     pictures: Path | None = None
+    simulated: Path | None = None
 
 
 def record_in(folder: Path | None) -> Record | None:
@@ -54,9 +56,9 @@ def comparison_of(study: Study) -> dict[str, Any]:
     return _read(study.diversity)
 
 
-def captions_of(study: Study) -> dict[str, str]:
-    """Return the captions of the pictures of the generative half, by name."""
-    return _read(study.pictures / _CAPTIONS if study.pictures else None)
+def captions_of(pictures: Path | None) -> dict[str, str]:
+    """Return the captions of the pictures in a folder, by name."""
+    return _read(pictures / _CAPTIONS if pictures else None)
 
 
 def _read(path: Path | None) -> dict[str, Any]:

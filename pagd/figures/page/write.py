@@ -107,7 +107,7 @@ def _performance(rows: Sequence[Row], study: Study) -> str:
             _NOTE,
             results_table(rows),
             f'<div class="grid wide">{"".join(plots)}</div>' if any(plots) else "",
-            embedded(study.pictures, SHOWN_ELSEWHERE, captions_of(study)),
+            embedded(study.simulated, SHOWN_ELSEWHERE, captions_of(study.simulated)),
         ]
     )
 
