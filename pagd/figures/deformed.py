@@ -140,9 +140,12 @@ def add_strain_bar(figure: Figure, axes: Sequence[Axes], top: float) -> None:
     bar.outline.set_edgecolor(INK)
 
 
-def draw_triad(figure: Figure, camera: Camera, length: float = 24.0) -> None:
-    """Draw the directions x, y and z, `length` points long, at the figure's lower left corner."""
-    axes = figure.add_axes((0.01, 0.02, 0.08, 0.1))
+def draw_triad(figure: Figure, camera: Camera, length: float = 24.0, height: float = 0.1) -> None:
+    """Draw the directions x, y and z, `length` points long, at the figure's lower left corner.
+
+    The lowest `height` of the figure is theirs.
+    """
+    axes = figure.add_axes((0.01, 0.2 * height, 0.08, height))
     axes.set_axis_off()
     for image, name in zip(length * camera.project(np.eye(3)), "xyz", strict=True):
         axes.annotate(

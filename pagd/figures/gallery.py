@@ -78,15 +78,10 @@ def rows_of(entries: Sequence[Entry]) -> list[tuple[str, list[Tile]]]:
     rows = []
     for mode, group in by_mode(entries).items():
         tiles = [_tile(entry) for entry in group]
-        count = _evened(len(tiles))
-        for i in range(0, len(tiles), count):
-            rows.append((mode if i == 0 else "", tiles[i : i + count]))
+        parts = np.array_split(np.arange(len(tiles)), -(-len(tiles) // _IN_A_ROW))
+        for i, part in enumerate(parts):
+            rows.append((mode if i == 0 else "", [tiles[k] for k in part]))
     return rows
-
-
-def _evened(count: int) -> int:
-    """Return how many tiles stand in a row, so that no tile is left alone."""
-    return -(-count // -(-count // _IN_A_ROW))
 
 
 def gallery_figure(rows: Sequence[tuple[str, Sequence[Tile]]]) -> Figure:
@@ -101,7 +96,7 @@ def gallery_figure(rows: Sequence[tuple[str, Sequence[Tile]]]) -> Figure:
         _draw_row(figure, heading, tiles, upper, scale, top)
         upper -= height
     _add_bar(figure, top)
-    draw_triad(figure, VIEW)
+    draw_triad(figure, VIEW, height=min(0.8 / sum(heights), 0.1))
     return figure
 
 

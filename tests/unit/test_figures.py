@@ -1,6 +1,7 @@
-"""Pictures and page: what goes into them is checked in numbers, what comes out by its pixels."""
+"""Pictures: what goes into them is checked in numbers, what comes out by its pixels."""
 
-import base64
+import dataclasses
+import itertools
 import json
 import re
 import shutil
@@ -13,6 +14,16 @@ import numpy as np
 import pytest
 import pyvista as pv
 import yaml
+from figure_samples import (
+    SIZE,
+    block,
+    path_of,
+    path_only,
+    solved,
+    states_of,
+    three_designs,
+    trajectory,
+)
 from matplotlib.axes import Axes
 from matplotlib.legend import Legend
 from matplotlib.text import Text
@@ -20,105 +31,34 @@ from PIL import Image
 
 from pagd.design import Design
 from pagd.errors import InputError, Status
-from pagd.figures import gallery, load, viewer
+from pagd.figures import gallery, groups, load, viewer
 from pagd.figures.angles import angles_figure, draw_angles
 from pagd.figures.deformed import Shapes, draw_deformed, strain_limit
 from pagd.figures.drawing import draw_side_by_side
-from pagd.figures.gallery import draw_gallery
+from pagd.figures.gallery import draw_gallery, gallery_figure
 from pagd.figures.geometry import draw_geometry, geometry_figure
-from pagd.figures.load import Path3D, States
+from pagd.figures.groups import by_mode, line_looks, read_entries
+from pagd.figures.load import States
 from pagd.figures.mesh import draw_mesh
 from pagd.figures.outline import section_loops
-from pagd.figures.page import write_page
+from pagd.figures.paths_by_mode import (
+    _spread,
+    angles_by_mode,
+    members_of,
+    trajectories_by_mode,
+)
 from pagd.figures.scene import Camera, Sheet, render
 from pagd.figures.style import number
 from pagd.figures.surface import cut_faces, sharp_edges, skin_of, split_faces
-from pagd.figures.trajectories import draw_trajectories, trajectories_figure
-from pagd.mesh.msh import write_msh
-from pagd.mesh.primitives import hollow_block
-from pagd.record import Record, versions, write_record
-from pagd.states import States as SolvedStates
-from pagd.states import write_states
+from pagd.figures.trajectories import draw_trajectories, load_all, trajectories_figure
 from pagd.tables import TRAJECTORY, write_table
 
 ROOT = Path(__file__).parents[2]
-SIZE = (20.0, 5.0, 6.0)
-PRESSURE = np.array([10.0, 20.0, 30.0])
-
-
-def block(half):
-    """A hollow block; as a half model, the half of one that is twice as wide."""
-    void = ((1, 3), (0, 1) if half else (1, 2), (2, 3))
-    return hollow_block(SIZE, (4, 3, 4), void, paper_layer=1, half=half)
-
-
-def bent(mesh, angle):
-    """Displacement of a circular arc towards −z."""
-    if angle == 0.0:
-        return np.zeros_like(mesh.points)
-    x, y, z = mesh.points.T
-    turn, radius = angle * x / SIZE[0], SIZE[0] / angle + z
-    height = radius * np.cos(turn) - SIZE[0] / angle
-    return np.column_stack([radius * np.sin(turn), y, height]) - mesh.points
-
-
-def states_of(mesh):
-    moved = np.stack([bent(mesh, 0.02 * p) for p in (0.0, *PRESSURE)])
-    strain = np.linspace(0.0, 0.3, 4)[:, None] * mesh.points[:, 2] / SIZE[2]
-    return States(mesh, np.array([0.0, *PRESSURE]), moved, strain)
-
-
-def solved(folder, half=False):
-    """Leave what the stages mesh, solve and metrics leave for one design."""
-    mesh = block(half)
-    for stage in ("mesh", "solve", "metrics"):
-        (folder / stage).mkdir(parents=True)
-    write_msh(mesh, folder / "mesh" / "mesh.msh")
-    recorded = states_of(load.load_mesh(folder))
-    kept = SolvedStates(
-        pressure_kPa=recorded.pressure_kPa[1:],
-        displacement=recorded.displacement[1:],
-        strain=recorded.strain[1:],
-    )
-    write_states(kept, folder / "solve" / "states.parquet")
-    write_table(folder / "metrics" / "trajectory.parquet", TRAJECTORY, trajectory(folder.name))
-    figures = {"bending_deg": 34.4, "tip_z_mm": -5.25, "tets": len(mesh.tets), "mode": "bending"}
-    write_record(record(folder.name, "metrics", figures=figures), folder / "metrics")
-    return folder
-
-
-def trajectory(name):
-    """Table of four pressures and three stations, in an order of its own."""
-    p, s = (a.ravel() for a in np.meshgrid([0.0, *PRESSURE], [2, 0, 1]))
-    columns = {"x_mm": 10.0 * s, "y_mm": 0.1 * p, "z_mm": -p * s}
-    angles = {"bending_deg": p * s, "twist_deg": 0.5 * p * s}
-    names = {"design_id": [name] * len(p), "pressure_kPa": p, "station": s.astype(np.int32)}
-    return {**names, **columns, **angles}
-
-
-def record(name, stage, status=Status.ok, reason=None, figures=None):
-    return Record(
-        stage=stage,
-        design_id=name,
-        status=status,
-        reason=reason,
-        figures=figures or {},
-        configuration={},
-        versions=versions(1),
-        timings_s={"wall": 1.0, "cpu": 1.0},
-        peak_memory_MB=1.0,
-    )
 
 
 @pytest.fixture(scope="module")
 def designs(tmp_path_factory):
-    """Two solved designs, one of them a half model, and one that failed."""
-    root = tmp_path_factory.mktemp("designs")
-    failed = root / "failed"
-    (failed / "geometry").mkdir(parents=True)
-    reason = "t_ab = 9 is <too thick> & leaves no cavity."
-    write_record(record("failed", "geometry", Status.invalid_geometry, reason), failed / "geometry")
-    return [solved(root / "whole"), solved(root / "half", half=True), failed]
+    return three_designs(tmp_path_factory.mktemp("designs"))
 
 
 def volume(points, triangles):
@@ -329,13 +269,6 @@ def test_few_chambers_have_the_dimensions_that_there_are(count, alpha, expected,
     assert figure.get_figheight() < 1.5 * figure.get_figwidth()
 
 
-def path_of(stations, twist=0.0, bending=5.0):
-    """A trajectory at three pressures that leaves the x axis downwards only."""
-    p, s = np.meshgrid([0.0, 5.0, 10.0], np.arange(stations), indexing="ij")
-    positions = np.stack([10.0 * s, 0.0 * s, -0.02 * p * s], axis=-1)
-    return Path3D(p[:, 0], positions, bending * s * p / 10.0, twist * s * p / 10.0)
-
-
 @pytest.mark.parametrize("chambers", [1, 2])
 def test_paths_of_few_chambers_are_drawn_with_room_for_ticks(chambers):
     figure = trajectories_figure({"few": path_of(chambers + 1)})
@@ -397,122 +330,130 @@ def test_nothing_to_draw_is_said(designs, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-# ---- page -----------------------------------------------------------------------------------
+# ---- many designs ---------------------------------------------------------------------------
+
+MODES = ("mixed", "bending", "twisting", "bending", "bending", "twisting")
 
 
-def unpacked(text, kind):
-    return np.frombuffer(base64.b64decode(text), dtype=kind)
+def many(root, draw, modes=MODES):
+    """Designs of several modes; the last but one is published, the last failed on its way."""
+    folders = [draw(root / f"d{i}", mode=m, origin="generated") for i, m in enumerate(modes)]
+    last = {"status": Status.bending_limit, "reason": "too far"} if draw is solved else {}
+    return [
+        *folders,
+        draw(root / "known", mode="bending", origin="published"),
+        draw(root / "stopped", mode="twisting", origin="generated", **last),
+    ]
 
 
-@pytest.mark.parametrize("half", [False, True])
-def test_viewer_keeps_shape_and_strain(half):
-    states = states_of(block(half))
-    data = viewer.viewer_data(states)
-    count, index = data["vertices"], f"<u{data['index_bits'] // 8}"
-    positions = unpacked(data["positions"], "<i2").reshape(4, 3, count) * data["step_mm"]
-    triangles = unpacked(data["triangles"], index).reshape(-1, 3)
-    skin = skin_of(states.mesh)
-    for state, u in enumerate(states.displacement):
-        exact = skin.vectors(states.mesh.points) + skin.vectors(u)
-        kept = positions[state].T[triangles]
-        assert np.abs(kept - exact[skin.triangles]).max() <= 0.5001 * data["step_mm"]
-    strain = unpacked(data["strain"], "<u1").reshape(4, count)[-1] / 255.0 * data["top"]
-    exact = np.minimum(skin.scalars(states.strain[-1])[skin.triangles], data["top"])
-    np.testing.assert_allclose(strain[triangles], exact, atol=data["top"] / 500.0)
+def test_designs_go_by_mode_known_ones_first(tmp_path):
+    groups = by_mode(read_entries([*many(tmp_path, path_only), tmp_path / "nothing"]))
+    assert {mode: [e.name for e in group] for mode, group in groups.items()} == {
+        "bending": ["known", "d1", "d3", "d4"],
+        "twisting": ["d2", "d5", "stopped"],
+        "mixed": ["d0"],
+        "no mode": ["nothing"],
+    }
 
 
-def test_viewer_splits_a_box_into_its_six_sides():
-    mesh = block(half=False)
-    data = viewer.viewer_data(states_of(mesh))
-    triangles = unpacked(data["triangles"], "<u2").reshape(-1, 3)
-    rest = unpacked(data["positions"], "<i2").reshape(4, 3, -1)[0].T * data["step_mm"]
-    normals = {}
-    for triangle in triangles:
-        a, b, c = rest[triangle]
-        normal = np.cross(b - a, c - a)
-        for vertex in triangle:
-            normals.setdefault(vertex, set()).add(tuple(np.round(normal / np.abs(normal).max())))
-    # No vertex belongs to two sides: shading has no reason to round the edges.
-    assert {len(found) for found in normals.values()} == {1}
-    edges = rest[unpacked(data["edges"], "<u2").reshape(-1, 2)]
-    length = np.linalg.norm(edges[:, 0] - edges[:, 1], axis=1).sum()
-    assert length == pytest.approx(4 * sum(SIZE), rel=1e-3)
-
-
-def test_large_skins_go_by_their_corners(monkeypatch):
-    states = states_of(block(half=False))
-    fine = viewer.viewer_data(states)
-    monkeypatch.setattr(viewer, "_MANY", 10)
-    coarse = viewer.viewer_data(states)
-    assert len(coarse["triangles"]) * 4 == pytest.approx(len(fine["triangles"]), abs=8)
-
-
-def test_path_of_the_tip_is_the_last_station():
-    positions = np.arange(24.0).reshape(2, 4, 3)
-    angles = np.array([[0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0, 6.0]])
-    data = viewer.path_data(Path3D(np.array([0.0, 5.0]), positions, angles, -angles))
-    assert data["bending_deg"] == [3.0, 6.0]
-    assert data["twist_deg"] == [-3.0, -6.0]
-    x, _, z = data["lines"][1]
-    assert (x, z) == ([12.0, 15.0, 18.0, 21.0], [14.0, 17.0, 20.0, 23.0])
+def test_lines_of_one_panel_differ():
+    looks = line_looks([f"d{i}" for i in range(24)])
+    assert len({(line.colour, line.script) for line in looks.values()}) == 24
+    assert len({(line.colour, str(line.dash)) for line in looks.values()}) == 24
+    assert len({line.colour for line in list(looks.values())[:6]}) == 6
 
 
 @pytest.fixture(scope="module")
-def page(designs, tmp_path_factory):
-    root = tmp_path_factory.mktemp("report")
-    pictures = root / "pictures"
-    draw_angles(designs, pictures / "angles.png")
-    write_page(designs, root / "index.html", pictures)
-    return root / "index.html"
+def gallery_rows(tmp_path_factory):
+    folders = many(tmp_path_factory.mktemp("many"), solved)
+    return gallery.rows_of(read_entries(folders))
 
 
-def test_page_needs_no_other_file(page):
-    text = page.read_text(encoding="utf-8")
-    scripts = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
-    assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", scripts)
-    assert "@import" not in scripts
-    assert "url(" not in scripts
-    assert text.count("data:image/webp;base64,") == 1
+def test_gallery_has_a_row_a_mode_and_names_failures(gallery_rows):
+    assert [heading for heading, _ in gallery_rows] == ["bending", "twisting", "mixed"]
+    assert [[t.title for t in tiles] for _, tiles in gallery_rows] == [
+        ["known", "d1", "d3", "d4"],
+        ["d2", "d5", "stopped"],
+        ["d0"],
+    ]
+    tiles = {tile.title: tile for _, row in gallery_rows for tile in row}
+    assert tiles["d0"].caption == "30 kPa: bends 60°, twists 30°"
+    assert (tiles["stopped"].status, tiles["d0"].status) == ("bending limit", "")
 
 
-def test_page_tells_of_every_design(page):
-    text = page.read_text(encoding="utf-8")
-    rows = re.findall(r"<tr><th><a.*?</tr>", text)
-    assert len(rows) == 3
-    assert "34.4" in rows[0]
-    assert "−5.2" in rows[1]
-    assert "invalid geometry" in rows[2]
-    assert "t_ab = 9 is &lt;too thick&gt; &amp; leaves no cavity." in text
-    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1))
-    assert [d["name"] for d in data["designs"]] == ["whole", "half", "failed"]
-    assert [d["viewer"] is not None for d in data["designs"]] == [True, True, False]
+def test_long_rows_are_parted_evenly(monkeypatch, gallery_rows):
+    tile = gallery_rows[0][1][0]
+    monkeypatch.setattr(gallery, "_tile", lambda entry: tile)
+    entries = [groups.Entry(Path(f"d{i}"), None) for i in range(26)]
+    lengths = [len(tiles) for _, tiles in gallery.rows_of(entries)]
+    assert lengths == [6, 5, 5, 5, 5]
 
 
-def test_page_of_failed_designs_only(designs, tmp_path):
-    write_page([designs[2], tmp_path / "never-run"], tmp_path / "index.html")
-    text = (tmp_path / "index.html").read_text(encoding="utf-8")
-    assert "invalid geometry" in text
-    assert "not run" in text
+def test_gallery_keeps_one_scale_and_its_captions_apart(gallery_rows):
+    figure = gallery_figure(gallery_rows)
+    shown = [axes for axes in figure.axes if axes.images]
+    widths = [axes.get_position().width * figure.get_figwidth() for axes in shown]
+    boxes = [tile.box for _, tiles in gallery_rows for tile in tiles]
+    scales = [width / box.width for width, box in zip(widths, boxes, strict=True)]
+    np.testing.assert_allclose(scales, scales[0])
+    heights = [axes.get_position().height * figure.get_figheight() for axes in shown]
+    np.testing.assert_allclose(heights, [scales[0] * box.height for box in boxes])
+    figure.draw_without_rendering()
+    places = [text.get_window_extent() for text in figure.texts]
+    pairs = itertools.combinations(places, 2)
+    assert not any(one.overlaps(other) for one, other in pairs)
+    assert {"bending limit", "twisting", "known"} <= set(labels(figure))
 
 
-@pytest.mark.skipif(not shutil.which("chromium"), reason="needs a browser: chromium")
-def test_page_draws_without_errors_in_a_browser(page, tmp_path):
-    flags = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync"
-    flags += " --disable-background-networking --disable-component-update --enable-logging=stderr"
-    flags += " --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --dump-dom"
-    flags += " --window-size=1200,4000 --virtual-time-budget=20000"
-    command = ["chromium", *flags.split(), f"--user-data-dir={tmp_path}", page.as_uri()]
-    answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    assert "Uncaught" not in answer.stderr
-    document = re.sub(r"<script.*?</script>", "", answer.stdout, flags=re.DOTALL)
-    # Four plots of all designs, and shape and angles of two designs.
-    assert document.count('class="plot-container') == 4 + 2 * 2
-    assert document.count('class="gl-container') >= 2
-    assert "30 kPa</output>" in document
-    # The key of the designs is text of the page; no legend lies over a title of theirs.
-    key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
-    assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
-    assert document.count('class="legend"') == 2
+def test_one_stretched_design_of_many_does_not_pale_the_others(gallery_rows):
+    tiles = [tile for _, row in gallery_rows for tile in row]
+    shapes = tiles[0].shapes
+    stretched = dataclasses.replace(shapes, strain=10.0 * shapes.strain)
+    top = gallery._strain_top([shapes] * 19 + [stretched])
+    assert top == pytest.approx(strain_limit([shapes]))
+    assert gallery._strain_top([shapes, stretched]) == strain_limit([stretched]) > 5.0 * top
+
+
+def paths_by_mode(root):
+    folders = many(root, path_only)
+    return members_of(by_mode(read_entries(folders)), load_all(folders))
+
+
+def test_paths_of_many_have_a_column_a_mode_and_one_scale(tmp_path):
+    figure = trajectories_by_mode(paths_by_mode(tmp_path))
+    found = labels(figure)
+    assert {"bending (4), from the side", "twisting (3), from the side"} <= set(found)
+    upper, lower = figure.axes[:3], figure.axes[3:]
+    for panels in (upper, lower):
+        assert len({(axes.get_xlim(), axes.get_ylim()) for axes in panels}) == 1
+        assert {axes.get_aspect() for axes in panels} == {1.0}
+    tips = {line.get_label(): line.get_xydata() for line in upper[0].lines}
+    np.testing.assert_allclose(tips["known"], [[20, 0], [20, -20], [20, -40], [20, -60]])
+    # Only the published design is named in the panel; the others by the legend.
+    assert [text.get_text() for text in upper[0].texts] == ["known"]
+    names = [text.get_text() for text in lower[1].get_legend().get_texts()]
+    assert names == ["d2", "d5", "stopped"]
+
+
+def test_angles_of_many_show_tips_and_chambers(tmp_path):
+    figure = angles_by_mode(paths_by_mode(tmp_path))
+    labels(figure)
+    panels = np.array(figure.axes).reshape(4, 3)
+    tips = {line.get_label(): line.get_xydata() for line in panels[0, 1].lines}
+    np.testing.assert_allclose(tips["d5"], [[0, 0], [10, 20], [20, 40], [30, 60]])
+    chambers = {line.get_label(): line.get_xydata() for line in panels[3, 1].lines}
+    np.testing.assert_allclose(chambers["d5"], [[1, 15], [2, 15]])
+
+
+def test_labels_of_ends_keep_their_distance():
+    wanted = [0.1, 0.5, 0.5, 0.52, 0.9]
+    places = np.array(_spread(wanted, 0.1))
+    assert np.diff(places).min() >= 0.1 - 1e-12
+    assert places[0] == pytest.approx(0.1)
+    assert np.abs(places - wanted).max() < 0.15
+
+
+# ---- drawing -------------------------------------------------------------------------------
 
 
 def test_the_drawing_shows_the_faces_towards_the_eye_and_names_the_designs(tmp_path):
@@ -529,6 +470,17 @@ def test_the_drawing_shows_the_faces_towards_the_eye_and_names_the_designs(tmp_p
         for side in (left, right)
     ]
     assert middle[0] < middle[1]
+
+
+def test_the_drawing_shows_the_examples_of_the_paper_alone(tmp_path):
+    folders = [
+        solved(tmp_path / "new", origin="generated"),
+        solved(tmp_path / "example", origin="table2"),
+    ]
+    draw_side_by_side(folders, tmp_path / "designs.svg")
+    assert re.findall("<text.*?>(.*?)</text>", (tmp_path / "designs.svg").read_text()) == [
+        "example, 30 kPa"
+    ]
 
 
 def test_a_drawing_of_nothing_is_refused(tmp_path):

@@ -1,0 +1,428 @@
+"""The page: its parts by their content, the whole in a browser."""
+
+import base64
+import dataclasses
+import html
+import json
+import re
+import shutil
+import subprocess
+import zlib
+
+import numpy as np
+import pytest
+from figure_samples import SIZE, block, path_only, record, solved, states_of, three_designs
+from PIL import Image
+
+from pagd.errors import InputError
+from pagd.figures import viewer
+from pagd.figures.angles import draw_angles
+from pagd.figures.captions import TOGETHER
+from pagd.figures.generative.captions import CAPTIONS
+from pagd.figures.groups import read_entries
+from pagd.figures.load import Path3D
+from pagd.figures.page import Study, write_page
+from pagd.figures.page.generative import SHOWN_ELSEWHERE, comparison_table
+from pagd.figures.page.rows import rows_of
+from pagd.figures.page.table import results_table
+from pagd.figures.surface import skin_of
+from pagd.record import write_record
+from pagd.tables import PERFORMANCE, write_rows
+
+# ---- shapes and paths as data ---------------------------------------------------------------
+
+
+def unpacked(text, kind):
+    return np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=kind)
+
+
+def positions_of(data):
+    """Positions (p, 3, v) in mm, as the script of the page finds them."""
+    shape = (len(data["pressure_kPa"]), 3, data["vertices"])
+    rest = unpacked(data["rest"], "<i2").reshape(shape[1:])
+    change = unpacked(data["change"], "<i2").reshape(shape[0] - 1, *shape[1:])
+    moved = np.cumsum(np.cumsum(change, axis=0, dtype="<i2"), axis=0, dtype="<i2")
+    return np.concatenate([rest[None], rest + moved]) * data["step_mm"]
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_viewer_keeps_shape_and_strain(half):
+    states = states_of(block(half))
+    data = viewer.viewer_data(states)
+    count, index = data["vertices"], f"<u{data['index_bits'] // 8}"
+    positions = positions_of(data)
+    triangles = unpacked(data["triangles"], index).reshape(-1, 3)
+    skin = skin_of(states.mesh)
+    for state, u in enumerate(states.displacement):
+        exact = skin.vectors(states.mesh.points) + skin.vectors(u)
+        kept = positions[state].T[triangles]
+        assert np.abs(kept - exact[skin.triangles]).max() <= 0.5001 * data["step_mm"]
+    strain = unpacked(data["strain"], "<u1").reshape(4, count)[-1] / 255.0 * data["top"]
+    exact = np.minimum(skin.scalars(states.strain[-1])[skin.triangles], data["top"])
+    np.testing.assert_allclose(strain[triangles], exact, atol=data["top"] / 500.0)
+
+
+def test_viewer_splits_a_box_into_its_six_sides():
+    mesh = block(half=False)
+    data = viewer.viewer_data(states_of(mesh))
+    triangles = unpacked(data["triangles"], "<u2").reshape(-1, 3)
+    rest = positions_of(data)[0].T
+    normals = {}
+    for triangle in triangles:
+        a, b, c = rest[triangle]
+        normal = np.cross(b - a, c - a)
+        for vertex in triangle:
+            normals.setdefault(vertex, set()).add(tuple(np.round(normal / np.abs(normal).max())))
+    # No vertex belongs to two sides: shading has no reason to round the edges.
+    assert {len(found) for found in normals.values()} == {1}
+    edges = rest[unpacked(data["edges"], "<u2").reshape(-1, 2)]
+    length = np.linalg.norm(edges[:, 0] - edges[:, 1], axis=1).sum()
+    assert length == pytest.approx(4 * sum(SIZE), rel=1e-3)
+
+
+def test_large_skins_go_by_their_corners(monkeypatch):
+    states = states_of(block(half=False))
+    fine = viewer.viewer_data(states)
+    monkeypatch.setattr(viewer, "_MANY", 10)
+    coarse = viewer.viewer_data(states)
+    counts = [len(unpacked(data["triangles"], "<u2")) for data in (coarse, fine)]
+    assert counts[0] * 4 == counts[1]
+
+
+def test_path_of_the_tip_is_the_last_station():
+    positions = np.arange(24.0).reshape(2, 4, 3)
+    angles = np.array([[0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0, 6.0]])
+    data = viewer.path_data(Path3D(np.array([0.0, 5.0]), positions, angles, -angles))
+    assert data["bending_deg"] == [3.0, 6.0]
+    assert data["twist_deg"] == [-3.0, -6.0]
+    x, _, z = data["lines"][1]
+    assert (x, z) == ([12.0, 15.0, 18.0, 21.0], [14.0, 17.0, 20.0, 23.0])
+
+
+# ---- page of a few designs ------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def designs(tmp_path_factory):
+    return three_designs(tmp_path_factory.mktemp("designs"))
+
+
+@pytest.fixture(scope="module")
+def page(designs, tmp_path_factory):
+    root = tmp_path_factory.mktemp("report")
+    pictures = root / "pictures"
+    draw_angles(designs, pictures / "angles.png")
+    write_page(designs, root / "index.html", pictures)
+    return root / "index.html"
+
+
+def data_of(text):
+    return json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1))
+
+
+def titles_of(text):
+    return re.findall(r"<h2>\d+\. (.*?)</h2>", text)
+
+
+def test_page_needs_no_other_file(page):
+    text = page.read_text(encoding="utf-8")
+    scripts = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
+    assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", scripts)
+    assert "@import" not in scripts
+    assert "url(" not in scripts
+    assert text.count("data:image/webp;base64,") == 1
+    assert TOGETHER["angles"] in text
+
+
+def test_page_tells_of_every_design(page):
+    text = page.read_text(encoding="utf-8")
+    rows = re.findall(r"<tr><th><a.*?</tr>", text)
+    assert len(rows) == 3
+    assert "34.4" in rows[0]
+    assert "−5.2" in rows[1]
+    assert "invalid geometry" in rows[2]
+    assert "t_ab = 9 is &lt;too thick&gt; &amp; leaves no cavity." in text
+    assert [d["name"] for d in data_of(text)["designs"]] == ["whole", "half", "failed"]
+    assert text.count('class="shape-data"') == 2
+    assert text.count('" open><summary>') == 3
+    # What there is nothing of has no section.
+    expected = ["What was run", "Performance", "Trajectories and angles", "Each design"]
+    assert titles_of(text) == expected
+
+
+def test_page_of_failed_designs_only(designs, tmp_path):
+    write_page([designs[2], tmp_path / "never-run"], tmp_path / "index.html")
+    text = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "invalid geometry" in text
+    assert "not run" in text
+    assert "No stage has left a record." in text
+
+
+# ---- table ----------------------------------------------------------------------------------
+
+
+def cells(row):
+    found = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)
+    return [re.sub("<.*?>", "", cell) for cell in found]
+
+
+def test_table_shows_what_is_known_and_sorts_by_numbers():
+    rows = [
+        {"design_id": "a", "link": True, "status": "ok", "origin": "own", "bending_deg": -1234.56},
+        {"design_id": "b", "link": False, "status": "mesh_failed", "novelty": 0.5},
+    ]
+    text = results_table(rows)
+    head, first, second = re.findall(r"<tr>.*?</tr>", text, re.DOTALL)
+    assert cells(head) == ["design", "status", "origin", "novelty", "bending°"]
+    assert cells(first) == ["a", "ok", "own", "–", "−1,234.6"]
+    assert cells(second) == ["b", "mesh failed", "–", "0.50", "–"]
+    assert 'data-order="-1234.56"' in first
+    assert 'href="#design-a"' in first
+    assert "href" not in second
+
+
+def test_rows_are_those_of_the_summary_with_what_the_records_add(tmp_path):
+    folder = solved(tmp_path / "drawn", size_mm=3.0, origin="published")
+    entries = read_entries([folder])
+    assert [row["design_id"] for row in rows_of(entries, [])] == ["drawn"]
+    summary = [
+        {"design_id": "other", "origin": "generated", "mode": "mixed", "status": "ok"},
+        {"design_id": "drawn", "status": "ok", "novelty": 1.5, "blocked_force_N": None},
+    ]
+    other, drawn = rows_of(entries, summary)
+    assert (other["design_id"], other["link"]) == ("other", False)
+    assert (drawn["size_mm"], drawn["novelty"], drawn["link"]) == (3.0, 1.5, True)
+    assert drawn["origin"] == "published"
+    assert "blocked_force_N" not in drawn
+
+
+# ---- comparison of generators ---------------------------------------------------------------
+
+
+def measured(generator, metric, value, space="plane", low=None, high=None, mode="all"):
+    keys = ("generator", "metric", "value", "space", "low", "high", "mode")
+    return dict(zip(keys, (generator, metric, value, space, low, high, mode), strict=True))
+
+
+COMPARISON = {
+    "generator": "gmm",
+    "spaces": {"plane": "plane of all", "encoded": "standardised"},
+    "metrics": {
+        "novelty": {"description": "mean distance", "better": "higher", "interval": "95 %"}
+    },
+    "rows": [
+        measured("training", "novelty", 0.25, "encoded"),
+        measured("random", "novelty", 12345.0, "encoded", -0.001234, 2.5),
+        measured("gmm", "novelty", None, "encoded"),
+        measured("gmm", "novelty", 99.0, "encoded", mode="mixed"),
+        measured("gmm", "dpp", -3.5),
+    ],
+}
+
+
+def test_comparison_has_a_table_a_space_and_the_own_generator_first():
+    text = comparison_table(COMPARISON)
+    plane, encoded = re.findall(r"<table>.*?</table>", text, re.DOTALL)
+    assert text.index("plane of all") < text.index("standardised")
+    rows = [cells(row) for row in re.findall(r"<tr>.*?</tr>", encoded)]
+    assert rows == [
+        ["generator", "novelty"],
+        ["gmm", "–"],
+        ["random", "12,345 [−0.00123, 2.50]"],
+        ["training", "0.250"],
+    ]
+    assert "−3.50" in plane
+    assert "mean distance; higher is better; in brackets: 95 %" in text
+
+
+def test_comparison_of_nothing_is_nothing():
+    assert comparison_table({}) == ""
+
+
+# ---- page of a study ------------------------------------------------------------------------
+
+
+def stage_record(folder, figures, **configuration):
+    folder.mkdir()
+    made = record("all", "mesh", figures=figures)
+    write_record(dataclasses.replace(made, configuration=configuration), folder)
+    return folder
+
+
+def pictures_in(folder, names):
+    folder.mkdir()
+    for name in names:
+        Image.new("RGB", (400, 300), "white").save(folder / f"{name}.png")
+    captions = {name: f"How {name} was <made>." for name in names}
+    (folder / "captions.json").write_text(json.dumps(captions))
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A run of the generative half: what its stages, pictures and summary leave."""
+    root = tmp_path_factory.mktemp("study")
+    counts = {"bending": {"random": 900, "table2": 1}, "twisting": {"random": 999}}
+    found = {"size": 1900, "counts": counts, "acceptance": {"bending": {"random": 0.5}}}
+    dataset = stage_record(root / "dataset", found, dataset={"seed": 7})
+    setting = {"method": "tsne", "perplexity": 30.0, "seed": 8}
+    embedding = stage_record(root / "embedding", {"trustworthiness": 0.9}, embedding=setting)
+    shares = {"bending": 0.25, "twisting": 0.25, "mixed": 0.5}
+    drawn = {"designs": 1000, "mode_share": shares, "novelty_mean": 1.25}
+    generated = stage_record(root / "generated", drawn, generator={"method": "gmm", "seed": 9})
+    pictures_in(root / "simulated", SHOWN_ELSEWHERE)
+    pictures_in(root / "pictures", [name for name in CAPTIONS if name not in SHOWN_ELSEWHERE])
+    (root / "diversity.json").write_text(json.dumps(COMPARISON))
+    rows = [
+        {"design_id": f"d{i}", "origin": "generated", "mode": "mixed", "status": "ok"}
+        | {"novelty": 0.1 * i, "bending_deg": 10.0 * i, "twist_deg": 1.0}
+        for i in range(7)
+    ]
+    write_rows(root / "performance.parquet", PERFORMANCE, rows)
+    return Study(
+        dataset=dataset,
+        embedding=embedding,
+        generated=generated,
+        diversity=root / "diversity.json",
+        performance=root / "performance.parquet",
+        pictures=root / "pictures",
+        simulated=root / "simulated",
+    )
+
+
+@pytest.fixture(scope="module")
+def whole_page(study, tmp_path_factory):
+    """The page of five designs of a study with seven."""
+    root = tmp_path_factory.mktemp("whole")
+    first = solved(root / "d0", mode="mixed", origin="generated")
+    others = [path_only(root / f"d{i}", mode="twisting", origin="published") for i in range(1, 5)]
+    write_page([first, *others], root / "index.html", study=study)
+    return root / "index.html"
+
+
+def test_page_of_a_study_follows_the_method(whole_page):
+    text = whole_page.read_text(encoding="utf-8")
+    assert titles_of(text) == [
+        "What was run",
+        "Data set and embedding",
+        "Generator and modes",
+        "Novelty and diversity",
+        "Performance",
+        "Trajectories and angles",
+        "Each design",
+    ]
+    for fact in (
+        "<dt>training designs</dt><dd>1,900</dd>",
+        "<dd>901 bending, 999 twisting</dd>",
+        "<dd>1,899 random, 1 of Table 2</dd>",
+        "<dd>bending 50 %</dd>",
+        "<dd>t-SNE, perplexity 30</dd>",
+        "<dd>bending 25 %, twisting 25 %, mixed 50 %</dd>",
+        "<dt>mean novelty, encoded space</dt><dd>1.250</dd>",
+        "<dt>simulated designs</dt><dd>7</dd>",
+    ):
+        assert fact in text
+    assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"
+
+
+def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
+    text = whole_page.read_text(encoding="utf-8")
+    shown = re.findall(r"<figcaption>How (\w+) was &lt;made&gt;\.</figcaption>", text)
+    assert sorted(shown) == sorted(CAPTIONS)
+    assert text.count("data:image/webp") == len(CAPTIONS)
+    assert shown[0] == "embedding"
+    assert text.index("How hull") < text.index("<h2>5. Performance") < text.index("How feasibility")
+
+
+def test_many_cards_are_closed_and_designs_without_a_folder_have_none(whole_page):
+    text = whole_page.read_text(encoding="utf-8")
+    assert re.findall(r'<details class="card" id="design-(\w+)">', text) == [
+        f"d{i}" for i in range(5)
+    ]
+    linked = re.findall(r'<a href="#design-(\w+)">', text)
+    assert linked == [f"d{i}" for i in range(5)]
+    data = data_of(text)
+    assert len(data["points"]) == 7
+    assert data["groups"] == ["twisting", "mixed"]
+
+
+def test_a_study_that_cannot_be_read_is_said(tmp_path):
+    (tmp_path / "diversity.json").write_text("{")
+    with pytest.raises(InputError, match=r"diversity.json: not readable as JSON"):
+        write_page([], tmp_path / "index.html", study=Study(diversity=tmp_path / "diversity.json"))
+    assert not (tmp_path / "index.html").exists()
+
+
+# ---- browser --------------------------------------------------------------------------------
+
+needs_browser = pytest.mark.skipif(not shutil.which("chromium"), reason="needs: chromium")
+
+
+def opened(page, folder, probe="", anchor=""):
+    """The document of a page after its scripts, and what ``probe`` finds when they have run."""
+    copy = folder / "page.html"
+    script = f"<script>addEventListener('load', async () => {{ {probe} }});</script>"
+    copy.write_text(page.read_text(encoding="utf-8") + (script if probe else ""), "utf-8")
+    flags = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync"
+    flags += " --disable-background-networking --disable-component-update --enable-logging=stderr"
+    flags += " --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --dump-dom"
+    flags += " --window-size=1200,4000 --virtual-time-budget=20000"
+    command = [
+        "chromium",
+        *flags.split(),
+        f"--user-data-dir={folder / 'profile'}",
+        copy.as_uri() + anchor,
+    ]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert "Uncaught" not in answer.stderr
+    assert not re.search("CONSOLE.*WARN", answer.stderr)
+    return re.sub(r"<script.*?</script>", "", answer.stdout, flags=re.DOTALL)
+
+
+@needs_browser
+def test_page_draws_without_errors_in_a_browser(page, tmp_path):
+    document = opened(page, tmp_path)
+    # Four plots of all designs, and shape and angles of two designs.
+    assert document.count('class="plot-container') == 4 + 2 * 2
+    assert document.count("<canvas") >= 2
+    assert "30 kPa</output>" in document
+    # The key of the designs is text of the page; no legend lies over a title of theirs.
+    key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
+    assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
+    assert document.count('class="legend"') == 2
+
+
+_PROBE = """
+const names = () => [...document.querySelectorAll("#results tbody tr:not([hidden]) th")]
+  .map((cell) => cell.textContent).join(" ");
+const click = (text) => [...document.querySelectorAll("#results thead button")]
+  .find((button) => button.textContent.startsWith(text)).click();
+const keys = () => [...document.querySelectorAll("#key li")].map((e) => e.textContent).join(" ");
+const found = { modes: keys() };
+click("novelty"); found.rising = names();
+click("novelty"); found.falling = names();
+const input = document.querySelector("input[type=search]");
+input.value = "D3 generated"; input.dispatchEvent(new Event("input"));
+found.filtered = names();
+found.count = document.querySelector("[data-count]").textContent;
+document.querySelectorAll("#groups button")[1].click(); found.twisting = keys();
+const list = document.createElement("pre");
+list.id = "found"; list.textContent = JSON.stringify(found); document.body.append(list);
+"""
+
+
+@needs_browser
+def test_table_sorts_and_filters_and_paths_are_shown_by_mode(whole_page, tmp_path):
+    document = opened(whole_page, tmp_path, _PROBE)
+    found = json.loads(html.unescape(re.search(r'id="found">(.*?)</pre>', document).group(1)))
+    assert found["rising"] == "d0 d1 d2 d3 d4 d5 d6"
+    assert found["falling"] == "d6 d5 d4 d3 d2 d1 d0"
+    assert (found["filtered"], found["count"]) == ("d3", "1 of 7 designs")
+    assert (found["modes"], found["twisting"]) == ("twisting mixed", "d1 d2 d3 d4")
+
+
+@needs_browser
+@pytest.mark.parametrize("anchor", ["", "#design-d0"])
+def test_a_shape_is_drawn_only_when_its_card_is_open(whole_page, tmp_path, anchor):
+    document = opened(whole_page, tmp_path, anchor=anchor)
+    card = re.search(r'<details[^>]*id="design-d0"[^>]*>.*?</details>', document, re.DOTALL).group()
+    assert ("<canvas" in card, "Loading the deformed shape" in card) == (bool(anchor), not anchor)
