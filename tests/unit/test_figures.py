@@ -495,8 +495,8 @@ def figures_command(folder, **settings):
     """The command that the workflow would draw the design `bending` with."""
     config = folder / "config"
     config.mkdir(exist_ok=True)
-    for name in ("materials.yaml", "table2.csv"):
-        shutil.copy(ROOT / "config" / name, config)
+    for source in (ROOT / "config" / "materials.yaml", *(ROOT / "config").glob("*.csv")):
+        shutil.copy(source, config)
     (config / "config.yaml").write_text(yaml.safe_dump({"figures": settings}))
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--cores", "1", "--dry-run", "--printshellcmds"]
