@@ -2,7 +2,8 @@
 
 t-SNE gives places to designs, not designs to places. A place is decoded from the k nearest
 designs of either kind, the straight (N1 = 0) and the slanted (N1 > 0), each weighted by its
-closeness, the inverse of its distance. The parameters are treated by what they mean:
+closeness, the inverse square of its distance (Shepard, Proc. 23rd ACM Nat. Conf., 1968). The
+parameters are treated by what they mean:
 
 - alpha is the share of helical chambers, and so the share of the slanted kind's closeness in all
   closeness: 0 or 1 within the island of one kind, in between between the islands;
@@ -88,7 +89,7 @@ class _Kind:
         count = min(self.neighbours + (left_out is not None), len(self.rows))
         distances, places = self.tree.query(points, k=np.arange(1, count + 1))
         # A design's own place would be infinitely close.
-        weights = 1.0 / np.maximum(distances, 1e-12)
+        weights = np.maximum(distances, 1e-12) ** -2
         nearest = self.rows[places]
         if left_out is not None:
             weights = _without(weights, nearest == left_out[:, None], self.neighbours)

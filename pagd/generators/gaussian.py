@@ -1,17 +1,32 @@
-"""The paper's generator: a Gaussian mixture over the designs' places in a reduced space."""
+"""The paper's generator: a Gaussian mixture over the designs' places in a reduced space.
+
+The bridge (:mod:`pagd.generators.mixture`) is as wide as the islands it lies between, so that many
+of its samples fall on them. The islands have Gaussians of their own: what the bridge draws there,
+a design of one category, is drawn again.
+"""
 
 from __future__ import annotations
 
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pagd.dataset.frame import designs_of
 from pagd.embedding.interface import Embedding
 from pagd.embedding.linear import FullSpace
+from pagd.errors import InputError
 from pagd.generators.interface import Proposal
 from pagd.generators.mixture import Mixture, bic_curve, fit_mixture
 
 __all__ = ["FullSpaceMixture", "PlainMixture", "ReducedSpaceMixture"]
+
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# So many draws of a point that is to lie between the islands and never does are enough.
+_TRIES = 300
 
 
 class ReducedSpaceMixture:
@@ -57,13 +72,35 @@ class ReducedSpaceMixture:
     def propose(self, count: int, rng: np.random.Generator) -> Proposal:
         """Sample the mixture and decode."""
         points, components = self.mixture.sample(count, rng)
+        redrawn = self._leave_the_islands(points, components, rng)
         decoded = self._embedding.decode(points)
         return Proposal(
             parameters=decoded.parameters,
             points=points,
             components=components,
             corrections=decoded.corrections,
+            redrawn=redrawn,
         )
+
+    def _leave_the_islands(
+        self, points: FloatArray, components: IntArray, rng: np.random.Generator
+    ) -> int:
+        """Draw the bridge's points again until each decodes to a mixed design; how many."""
+        wrong, redrawn = np.flatnonzero(components == self.mixture.bridge), 0
+        for _ in range(_TRIES):
+            wrong = wrong[~self._is_mixed(points[wrong])] if len(wrong) else wrong
+            if len(wrong) == 0:
+                return redrawn
+            points[wrong] = self.mixture.sample_of(self.mixture.bridge or 0, len(wrong), rng)
+            redrawn += len(wrong)
+        raise InputError(
+            f"generator.bridge_share = {self.bridge_share:g} must be 0 for these designs: between "
+            f"their two categories hardly any point decodes to a mixed design."
+        )
+
+    def _is_mixed(self, points: FloatArray) -> NDArray[np.bool_]:
+        designs = designs_of(self._embedding.decode(points).parameters)
+        return np.array([design.mode == "mixed" for design in designs])
 
     def _space(self, embedding: Embedding) -> Embedding:
         return embedding
@@ -98,6 +135,7 @@ class FullSpaceMixture(ReducedSpaceMixture):
             parameters=proposal.parameters,
             components=proposal.components,
             corrections=proposal.corrections,
+            redrawn=proposal.redrawn,
         )
 
     def _space(self, embedding: Embedding) -> Embedding:

@@ -97,6 +97,7 @@ class _Sieve:
     seen: set[Design] = field(default_factory=set)
     tally: Counter[str] = field(default_factory=Counter)
     in_vain: int = 0
+    redrawn: int = 0
     broken: Counter[str] = field(default_factory=Counter)
     corrections: Counter[str] = field(default_factory=Counter)
 
@@ -107,6 +108,7 @@ class _Sieve:
     def take(self, proposal: Proposal, count: int) -> None:
         """Take what is usable of a proposal, as long as there are fewer than ``count``."""
         self.corrections.update(proposal.corrections)
+        self.redrawn += proposal.redrawn
         for i, design in enumerate(designs_of(proposal.parameters)):
             self.tally["proposed"] += 1
             reason = self._refusal(design)
@@ -156,6 +158,7 @@ class _Sieve:
             "proposed": self.tally["proposed"],
             "refused": {reason: self.tally[reason] for reason in reasons},
             "refused_by_parameter": dict(sorted(self.broken.items())),
+            "redrawn_by_generator": self.redrawn,
             "corrections": dict(sorted(self.corrections.items())),
             "mode_share": {mode: float(modes.get(mode, 0) / len(designs)) for mode in _MODES},
         }

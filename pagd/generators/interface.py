@@ -25,12 +25,14 @@ class Proposal:
         generator does not draw there.
     components: (n,) index of the Gaussian that each was drawn from; None without a mixture.
     corrections: how many values had to be brought into limits, by parameter.
+    redrawn: how many draws of its own the generator has replaced by others.
     """
 
     parameters: pd.DataFrame
     points: FloatArray | None = None
     components: NDArray[np.int64] | None = None
     corrections: dict[str, int] = field(default_factory=dict)
+    redrawn: int = 0
 
 
 class Generator(Protocol):

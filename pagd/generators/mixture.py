@@ -48,10 +48,16 @@ class Mixture:
     def sample(self, count: int, rng: np.random.Generator) -> tuple[FloatArray, NDArray[np.int64]]:
         """Return points (count, d) in random order, and the Gaussian of each (count,)."""
         components = rng.choice(len(self.weights), size=count, p=self.weights)
-        normal = rng.standard_normal((count, self.means.shape[1]))
-        roots = np.stack([_root(covariance) for covariance in self.covariances])
-        points = self.means[components] + np.einsum("nij,nj->ni", roots[components], normal)
+        points = np.empty((count, self.means.shape[1]))
+        for k in range(len(self.weights)):
+            members = components == k
+            points[members] = self.sample_of(k, int(members.sum()), rng)
         return points, components
+
+    def sample_of(self, component: int, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return points (count, d) of one of the Gaussians."""
+        normal = rng.standard_normal((count, self.means.shape[1]))
+        return np.asarray(self.means[component] + normal @ _root(self.covariances[component]))
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as lists of numbers, for JSON."""

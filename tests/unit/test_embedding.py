@@ -121,8 +121,8 @@ def row_of_four() -> tuple[NeighbourDecoder, list[float]]:
 def test_between_the_kinds_alpha_is_the_share_of_closeness() -> None:
     decoder, thetas = row_of_four()
     decoded = decoder.decode(np.array([[5.0, 0.0], [3.0, 0.0], [7.0, 0.0]])).parameters
-    # At 3 the nearest straight design is 2 away, the nearest slanted one 6: 1/6 of 1/2 + 1/6.
-    assert list(decoded["alpha"]) == [0.5, 0.3, 0.8]
+    # At 3 the nearest straight design is 2 away, the nearest slanted one 6: 1/36 of 1/4 + 1/36.
+    assert list(decoded["alpha"]) == [0.5, 0.1, 0.9]
     # The slant is that of the slanted design, however small its share.
     assert list(decoded["theta"]) == [thetas[2]] * 3
 
@@ -132,7 +132,7 @@ def test_other_parameters_go_with_the_share_of_chambers() -> None:
     width = training()["W"].to_numpy()
     middle, left = decoder.decode(np.array([[5.0, 0.0], [3.0, 0.0]])).parameters["W"]
     assert middle == pytest.approx((width[1] + width[120]) / 2, abs=0.0051)
-    assert left == pytest.approx(0.7 * width[1] + 0.3 * width[120], abs=0.0051)
+    assert left == pytest.approx(0.9 * width[1] + 0.1 * width[120], abs=0.0051)
 
 
 def test_within_an_island_the_other_kind_has_no_say() -> None:
@@ -147,11 +147,9 @@ def test_a_design_that_is_left_out_is_decoded_from_the_others() -> None:
     decoder, _ = row_of_four()
     points = np.array([[0.0, 0.0], [10.0, 0.0]])
     decoded = decoder.decode_left_out(np.array([0, 3]), points).parameters
-    # The nearest of the others are 1 away, those of the other kind 9: a share of 1/10.
-    assert list(decoded["alpha"]) == [0.1, 0.9]
-    width = training()["W"].to_numpy()
-    expected = [0.9 * width[1] + 0.1 * width[120], 0.1 * width[1] + 0.9 * width[120]]
-    np.testing.assert_allclose(decoded["W"], expected, atol=0.0051)
+    # The nearest of the others are 1 away, those of the other kind 9: too far for a chamber.
+    assert list(decoded["alpha"]) == [0.0, 1.0]
+    assert list(decoded["W"]) == [training()["W"][1], training()["W"][120]]
 
 
 def test_one_kind_alone_can_be_decoded() -> None:

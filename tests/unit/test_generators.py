@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -120,15 +122,34 @@ def test_mixed_designs_come_from_the_bridge() -> None:
     found = drawn(generator)
     mixed = (found.designs["mode"] == "mixed").to_numpy()
     assert found.components is not None
-    # The rest comes from the shores of the two islands.
-    assert np.mean(found.components[mixed] == 2) > 0.5
-    assert np.mean(found.components[~mixed] == 2) < 0.3
+    # A few come from the shores of the two islands, none of the bridge's is of one category.
+    assert np.mean(found.components[mixed] == 2) > 0.8
+    assert not (found.components[~mixed] == 2).any()
+    assert found.report["redrawn_by_generator"] > 0
     assert found.designs.loc[mixed, "alpha"].nunique() > 5
 
 
 @pytest.mark.parametrize("method", ["random", "resample"])
 def test_baselines_have_the_two_modes_of_the_data_set(method: str) -> None:
     assert drawn(made(method)).report["mode_share"]["mixed"] == 0
+
+
+def test_without_the_bridge_hardly_any_design_is_mixed() -> None:
+    assert drawn(made("gmm_plain")).report["mode_share"]["mixed"] < 0.1
+
+
+def test_a_bridge_without_a_gap_is_told() -> None:
+    """Where alpha makes no difference between the islands, nothing lies between them."""
+
+    class OneKind(type(plane())):  # type: ignore[misc]
+        def decode(self, points: np.ndarray) -> object:
+            found = super().decode(points)
+            return dataclasses.replace(found, parameters=found.parameters.assign(alpha=1.0))
+
+    one_kind = OneKind(perplexity=15).restore(training(), plane().points)
+    generator = make_generator(SECTION | {"method": "gmm"}, RULES).fit(one_kind)
+    with pytest.raises(InputError, match=r"^generator.bridge_share = 0\.333333 must be 0 for"):
+        drawn(generator)
 
 
 def test_what_cannot_be_had_is_told_in_one_sentence() -> None:
