@@ -11,13 +11,20 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run test lint clean distclean system-packages
+.PHONY: help run dataset sweep test lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
-run: .venv/pagd-installed ## Take the designs of the configuration from parameters to trajectories, into results/.
+run: .venv/pagd-installed ## Do all of it: training designs, generated designs, simulation, pictures, page; into results/.
 	snakemake --profile profiles/default --cores $(CORES)
+
+dataset: .venv/pagd-installed ## Draw the training designs only: results/dataset/.
+	snakemake --profile profiles/default --cores $(CORES) dataset
+
+# With as many as are generated, the selection is all of them.
+sweep: .venv/pagd-installed ## Simulate all generated designs, 1,000 of them: hours; make it on a large machine.
+	snakemake --profile profiles/default --cores $(CORES) --config 'selection={"designs": 1000000}'
 
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.

@@ -9,7 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pagd.documents import read_document
+from yaml import YAMLError
+
+from pagd.documents import parse_yaml, read_document
 from pagd.errors import InputError
 from pagd.materials import Use, find_material
 from pagd.validation import check, defaults, schema
@@ -25,6 +27,7 @@ __all__ = [
     "material_file",
     "part",
     "part_as_json",
+    "retyped",
 ]
 
 #: The sections of the configuration that each stage depends on, and no others.
@@ -121,6 +124,27 @@ def completed(given: Mapping[str, Any]) -> Config:
         merge = isinstance(value, Mapping) and key != "designs"
         config[key] = {**config[key], **value} if merge else value
     return config
+
+
+def retyped(given: Mapping[str, Any]) -> Config:
+    """Return a configuration with numbers for what is the text of one.
+
+    Snakemake takes all values in ``--config 'mesh={"size_mm": 4}'`` for text. Keys that hold text
+    by their schema keep it.
+    """
+    return dict(_retyped(given, schema("config")))
+
+
+def _retyped(value: Any, by: Mapping[str, Any]) -> Any:
+    if isinstance(value, Mapping):
+        parts = by.get("properties", {})
+        return {key: _retyped(entry, parts.get(key, {})) for key, entry in value.items()}
+    if not isinstance(value, str) or "type" not in by or by["type"] == "string":
+        return value
+    try:
+        return parse_yaml(value)
+    except YAMLError:
+        return value
 
 
 def part(config: Mapping[str, Any], stage: str) -> Config:

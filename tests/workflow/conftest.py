@@ -26,6 +26,25 @@ SETTINGS: dict[str, Any] = {
     # So little pressure moves the tip by a fraction of a degree.
     "metrics": {"still_deg": 0.01, "joint_deg": 0.001},
     "figures": {"resolution_dpi": 60},
+    # Without it, nothing of the generative half belongs to a run.
+    "selection": {"designs": 0},
+}
+
+#: A small generative half: 300 training designs, 40 generated ones, 3 of which are simulated.
+GENERATIVE: dict[str, Any] = {
+    "solve": {"maximum_pressure_kPa": 2.0, "recorded_step_kPa": 1.0},
+    "figures": {"drawn_designs": 0},
+    "dataset": {"size": 300},
+    "embedding": {"perplexity": 10.0},
+    "generator": {"designs": 40, "largest_components": 3},
+    "diversity": {
+        "plane_designs": 60,
+        "plane_seeds": 2,
+        "hull_designs": 20,
+        "hull_repeats": 10,
+        "neighbours": 3,
+    },
+    "selection": {"designs": 3},
 }
 
 
@@ -79,3 +98,20 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Project:
     answer = project.snakemake()
     assert answer.returncode == 0, answer.stderr
     return project
+
+
+@pytest.fixture(scope="module")
+def generative(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """A project that has run with its generative half, and one small design of its own."""
+    project = Project(tmp_path_factory.mktemp("generative"))
+    project.write(STRAIGHT, **GENERATIVE)
+    answer = project.snakemake()
+    assert answer.returncode == 0, answer.stderr
+    return project
+
+
+@pytest.fixture
+def copied(generative: Project, tmp_path: Path) -> Project:
+    """A copy of that project, to be changed and run."""
+    shutil.copytree(generative.folder, tmp_path / "copy")
+    return Project(tmp_path / "copy")

@@ -24,9 +24,14 @@ GATHERED = {
     "summary/performance.parquet",
     "summary/trajectories.parquet",
     "summary/summary.csv",
-    "figures",
+    "figures/together",
+    "figures/simulated",
     "report/index.html",
 }
+
+
+GENERATIVE_RULES = ("dataset", "embedding", "generate", "diversity", "diversity_table", "select")
+KNOWN = [ROOT / "config" / f"{name}.csv" for name in ("table2", "published_designs")]
 
 
 def of_design(name: str, stages: tuple[str, ...] = STAGES) -> set[str]:
@@ -95,6 +100,16 @@ def test_trajectories_hold_every_station_at_every_pressure(finished: Project) ->
     }
 
 
+def test_without_a_selection_there_is_no_generative_half(finished: Project) -> None:
+    assert {path.name for path in (finished / "").iterdir()} == {
+        "benchmarks", "designs", "figures", "logs", "report", "summary"
+    }  # fmt: skip
+    answer = finished.snakemake("--dry-run", "--forceall")
+    assert not re.search(rf"^({'|'.join(GENERATIVE_RULES)}) ", said(answer), re.MULTILINE)
+    rows = read_rows(finished / "summary/performance.parquet")
+    assert {row["novelty"] for row in rows} == {None}
+
+
 def test_a_straight_design_is_solved_as_a_half(finished: Project) -> None:
     volumes = {
         name: (
@@ -114,7 +129,7 @@ def test_pictures_and_page(finished: Project) -> None:
         for picture in ("geometry", "mesh", "deformed"):
             content = (finished / f"designs/{name}/figures/{picture}.png").read_bytes()
             assert content.startswith(b"\x89PNG")
-    assert {path.name for path in (finished / "figures").glob("*.png")} == {
+    assert {path.name for path in (finished / "figures/together").glob("*.png")} == {
         "angles.png",
         "gallery.png",
         "trajectories.png",
@@ -157,7 +172,8 @@ def test_another_order_or_a_new_design_runs_no_other(changed: Project) -> None:
 def test_a_changed_picture_runs_pictures_only(changed: Project) -> None:
     changed.write(STRAIGHT, SLANTED, THIN, figures={"resolution_dpi": 70})
     drawn = {f"designs/{name}/figures" for name in ("straight", "slanted", "thin")}
-    assert changed.pending() == drawn | {"figures", "report/index.html"}
+    pictures = {"figures/together", "figures/simulated", "report/index.html"}
+    assert changed.pending() == drawn | pictures
 
 
 def test_a_changed_material_runs_from_the_solve_on(changed: Project) -> None:
@@ -207,6 +223,8 @@ def test_a_crash_is_not_hidden_and_leaves_nothing(project: Project) -> None:
         ({"solv": {}}, "solv is not a known key (did you mean solve?)."),
         ({"material": "jelly"}, "material is 'jelly', but must be one of "),
         ({"designs": {"own": "config/absent.csv"}}, "table of designs config/absent.csv: cannot"),
+        ({"dataset": {"size": 99}}, "plane_designs = 1000 must be at most dataset.size = 99."),
+        ({"generator": {"components": "few"}}, "= 'few' must be a whole number or bic."),
     ],
 )
 def test_a_bad_configuration_is_told_in_one_sentence(
@@ -233,7 +251,10 @@ def test_dry_run_of_the_repository(tmp_path: Path) -> None:
     answer = Project(tmp_path).snakemake("--dry-run")
     assert answer.returncode == 0, answer.stderr
     counts = dict(re.findall(r"^(\w+) +(\d+)$", said(answer), re.MULTILINE))
-    assert {stage: counts[stage] for stage in STAGES} == dict.fromkeys(STAGES, "3")
+    # Known designs are there at once; generated ones join when they are selected.
+    known = sum(len(path.read_text().splitlines()) - 1 for path in KNOWN)
+    expected = dict.fromkeys(STAGES[:-1], str(known)) | dict.fromkeys(GENERATIVE_RULES, "1")
+    assert {rule: counts[rule] for rule in expected} == expected
     assert list(tmp_path.glob("results/*")) == []
 
 
@@ -245,7 +266,7 @@ def test_lint() -> None:
 
 @pytest.mark.parametrize("file", sorted((ROOT / "workflow" / "rules").glob("*.smk")), ids=str)
 def test_every_rule_says_what_it_does_and_needs(file: Path) -> None:
-    rules = re.split(r"^rule (\w+):\n", file.read_text(), flags=re.MULTILINE)[1:]
+    rules = re.split(r"^(?:rule|checkpoint) (\w+):\n", file.read_text(), flags=re.MULTILINE)[1:]
     for name, body in zip(rules[::2], rules[1::2], strict=True):
         if "output:" not in body:  # a target
             continue

@@ -1,5 +1,6 @@
 # The configuration and the designs, checked once, and what the rules ask of them.
 
+import functools
 import json
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ from pagd.config import (
     known_tables,
     material_as_json,
     part_as_json,
+    retyped,
 )
 from pagd.errors import InputError
 from pagd.stages import STAGE_VERSIONS
@@ -24,7 +26,8 @@ shell.prefix(f"export PATH={quote(str(Path(sys.executable).parent))}:$PATH; ")
 
 
 def read_inputs(config, check):
-    """The completed configuration, the designs by name and the materials by use."""
+    """The completed configuration; designs and known designs by name; materials by use."""
+    config = retyped(config)
     try:
         whole = checked(config, "configuration") if check else completed(config)
         if check:
@@ -68,9 +71,16 @@ def of_generative_half(path):
     return [path] if GENERATIVE else []
 
 
-def selected_designs(folder):
-    """The generated designs that the checkpoint has selected, by name."""
-    return read_designs({"generated": f"{folder}/designs.csv"}, checked=False)
+def selected_designs():
+    """The generated designs that the checkpoint has selected, by name; none before that."""
+    table = Path(rules.select.output.selection) / "designs.csv"
+    return designs_in(table, table.stat().st_mtime_ns) if table.is_file() else {}
+
+
+@functools.lru_cache(maxsize=1)
+def designs_in(table, changed):
+    """The designs of a table that pagd has written, read once each time that it has changed."""
+    return read_designs({"generated": str(table)}, checked=False)
 
 
 def all_designs():
@@ -80,7 +90,8 @@ def all_designs():
     """
     if not GENERATIVE:
         return TABLES
-    return TABLES | selected_designs(checkpoints.select.get().output.selection)
+    checkpoints.select.get()
+    return TABLES | selected_designs()
 
 
 def selection_of_design(wildcards):
@@ -90,10 +101,13 @@ def selection_of_design(wildcards):
 
 def design_row(wildcards):
     """The design's own row: a change of it, and of no other row, runs the design again."""
-    designs = TABLES if wildcards.design in TABLES else all_designs()
-    if wildcards.design not in designs:
-        raise WorkflowError(f"No table of designs has a design named '{wildcards.design}'.")
-    return designs[wildcards.design].as_json()
+    name = wildcards.design
+    designs = TABLES if name in TABLES else selected_designs()
+    if name not in designs:
+        # Until the checkpoint is done, Snakemake takes this for "not known yet".
+        checkpoints.select.get()
+        raise WorkflowError(f"No design is named '{name}': neither in the tables nor selected.")
+    return designs[name].as_json()
 
 
 def config_of(stage):
