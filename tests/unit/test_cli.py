@@ -1,4 +1,5 @@
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -22,23 +23,27 @@ def test_help_names_every_stage_and_imports_nothing_heavy() -> None:
         "from pagd.cli.parser import make_parser\n"
         "print(make_parser().format_help())\n"
         "heavy = {'gmsh', 'pymeshlab', 'pyvista', 'pandas', 'matplotlib', 'numba', 'scipy'}\n"
+        "heavy |= {'sklearn', 'openTSNE', 'pyarrow'}\n"
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
     )
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert answer.returncode == 0, answer.stderr
-    for stage in ("run", "design", "geometry", "repair", "mesh", "solve", "metrics", "figures"):
-        assert f"\n    {stage} " in answer.stdout
+    simulation = ("run", "design", "geometry", "repair", "mesh", "solve", "metrics", "figures")
+    generation = ("dataset", "embed", "generate", "diversity", "select")
+    for stage in simulation + generation:
+        assert re.search(rf"^    {stage}\s", answer.stdout, re.MULTILINE)
 
 
 def test_every_subcommand_has_a_handler() -> None:
-    from pagd.cli import commands
+    from pagd.cli import commands, generative
 
     subcommands = make_parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
     for name, parser in subcommands.items():  # type: ignore[union-attr]
         if name != "design":
             assert parser.get_default("handler").__closure__ is not None
-    for name in commands.__all__:
-        assert callable(getattr(commands, name))
+    for module in (commands, generative):
+        for name in module.__all__:
+            assert callable(getattr(module, name))
 
 
 def test_show_tells_what_follows(capsys: pytest.CaptureFixture[str]) -> None:
@@ -95,6 +100,31 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
         (["solve", "--mesh", "absent.msh", "--out", "out"], "pagd: absent.msh: there is no such"),
         (["solve", "--mesh", "a", "--threads", "0", "--out", "out"], "pagd: --threads = 0 must be"),
         (["solve", "--mesh", "a", "--material", "x", "--out", "out"], "pagd: material is 'x', but"),
+        (
+            ["dataset", "--size", "0", "--out", "out"],
+            "pagd: command line: dataset.size = 0 must",
+        ),
+        (
+            ["dataset", "--sampling", "grid", "--out", "out"],
+            "pagd: command line: dataset.sampling",
+        ),
+        (
+            ["embed", "--dataset", "absent", "--out", "out"],
+            "pagd: absent/designs.parquet: not a",
+        ),
+        (
+            ["generate", "--generator", "x", "--out", "out"],
+            "pagd: command line: generator.method",
+        ),
+        (
+            ["generate", "--embedding", "a", "--out", "out"],
+            "pagd: embedding = a needs the data",
+        ),
+        (["generate", "--threads", "0", "--out", "out"], "pagd: --threads = 0 must be at least 1."),
+        (
+            ["select", "--dataset", "a", "--generated", "b", "-n", "-1", "--out", "out"],
+            "pagd: command line: selection.designs = -1 must be at least 0.",
+        ),
     ],
 )
 def test_bad_input_is_one_sentence_and_code_2(

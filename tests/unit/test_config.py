@@ -75,6 +75,64 @@ def test_a_bad_file_is_told_in_one_sentence(tmp_path: Path, text: str, words: st
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"dataset": {"size": 500}}, "plane_designs = 1000 must be at most dataset.size = 500."),
+        (
+            {"generator": {"designs": 20}, "selection": {"designs": 30}},
+            "diversity.hull_designs = 50 must be at most generator.designs = 20.",
+        ),
+        (
+            {"diversity": {"plane_designs": 60}},
+            "embedding.perplexity = 30 must be at most a third of diversity.plane_designs = 20.",
+        ),
+    ],
+)
+def test_what_sections_ask_of_each_other(given: dict[str, dict[str, int]], words: str) -> None:
+    config.check_study(config.load(None), "configuration")
+    with pytest.raises(InputError, match=r"^configuration: ") as caught:
+        config.check_study(config.load(json.dumps(given)), "configuration")
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("components", [1, 3, "bic"])
+def test_components_are_a_number_or_bic(components: int | str) -> None:
+    found = config.load(json.dumps({"generator": {"components": components}}))
+    assert found["generator"]["components"] == components
+
+
+@pytest.mark.parametrize("components", [0, 2.5, "BIC", None])
+def test_nothing_else_is_a_number_of_components(components: object) -> None:
+    with pytest.raises(InputError, match=r"generator\.components = "):
+        config.load(json.dumps({"generator": {"components": components}}))
+
+
+def test_text_of_numbers_becomes_numbers_and_other_text_stays() -> None:
+    given = {
+        "material": "7",
+        "mesh": {"size_mm": "4.5", "half_model": "false", "meshers": "[gmsh]"},
+        "generator": {"bandwidth": "null", "components": "bic", "seed": 3},
+        "selection": {"designs": "many", "unknown": "1"},
+    }
+    assert config.retyped(given) == {
+        "material": "7",
+        "mesh": {"size_mm": 4.5, "half_model": False, "meshers": ["gmsh"]},
+        "generator": {"bandwidth": None, "components": "bic", "seed": 3},
+        "selection": {"designs": "many", "unknown": "1"},
+    }
+
+
+def test_known_designs_come_with_pagd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    tables = config.known_tables(config.load(None))
+    assert set(tables) == {"table2", "published"}
+    for path in tables.values():
+        assert Path(path).read_text() == (ROOT / "config" / Path(path).name).read_text()
+    own = config.load('{"dataset": {"known": {"own": "mine.csv"}}}')
+    assert config.known_tables(own) == {"own": "mine.csv"}
+
+
 def test_json_text_and_missing_files() -> None:
     assert config.load('{"paper": "card"}')["paper"] == "card"
     with pytest.raises(InputError, match=r"is not JSON"):

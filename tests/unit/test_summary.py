@@ -82,6 +82,19 @@ def test_the_table_for_people(folders: list[Path], tmp_path: Path) -> None:
     assert rows["bad"]["reason"] == "The mesher gave up."
 
 
+def test_novelty_of_those_that_have_one(folders: list[Path], tmp_path: Path) -> None:
+    write_summary(folders, tmp_path / "p.parquet", tmp_path / "s.csv", {"good": 0.71249})
+    novelty = {row["design_id"]: row["novelty"] for row in read_rows(tmp_path / "p.parquet")}
+    assert novelty == {"bad": None, "good": 0.71249, "own": None}
+    rows = {row["design"]: row for row in csv.DictReader((tmp_path / "s.csv").open())}
+    assert {name: row["novelty"] for name, row in rows.items()} == {
+        "bad": "", "good": "0.712", "own": ""
+    }  # fmt: skip
+    assert {name: row["origin"] for name, row in rows.items()} == {
+        "bad": "own", "good": "table2", "own": ""
+    }  # fmt: skip
+
+
 def test_trajectories_of_those_that_have_one(folders: list[Path], tmp_path: Path) -> None:
     write_trajectories(folders, tmp_path / "t.parquet")
     assert [row["design_id"] for row in read_rows(tmp_path / "t.parquet")] == ["good"]
