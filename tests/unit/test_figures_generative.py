@@ -619,7 +619,7 @@ def test_all_pictures_of_a_run_are_drawn(results, tmp_path):
 
 def test_without_results_there_is_no_picture_but_a_reason(tmp_path):
     missing = draw_generative(tmp_path / "nothing", tmp_path / "out", 50)
-    assert set(missing) == set(PICTURES)
+    assert set(missing) == {*PICTURES, "modes"}
     assert missing["mixture"] == "There is no data set."
     assert [path.name for path in (tmp_path / "out").iterdir()] == [CAPTIONS_NAME]
 

@@ -17,6 +17,7 @@ from pagd.figures.generative.facts import facts_of
 from pagd.figures.generative.feasibility import draw_feasibility
 from pagd.figures.generative.hull import draw_hull
 from pagd.figures.generative.mixture import draw_mixture
+from pagd.figures.generative.modes import draw_modes
 from pagd.figures.generative.novelty_performance import draw_novelty_performance
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw
 from pagd.figures.style import set_resolution
@@ -39,6 +40,8 @@ PICTURES: Final[Mapping[str, Callable[[GenerativePaths, Path], None]]] = {
     "bending_twist": draw_bending_twist,
     "novelty_performance": draw_novelty_performance,
 }
+#: The picture of the documentation: text, so that it can be kept under version control.
+_MODES = "modes.svg"
 
 
 def draw_generative(
@@ -51,7 +54,7 @@ def draw_generative(
     results
         Folder of results, or where its parts lie.
     out
-        Folder of the pictures, NAME.png each.
+        Folder of the pictures, NAME.png each, and modes.svg, a small one of the three modes.
     resolution_dpi
         Dots per inch.
 
@@ -63,12 +66,13 @@ def draw_generative(
     paths = results if isinstance(results, GenerativePaths) else GenerativePaths.under(results)
     set_resolution(resolution_dpi)
     missing: dict[str, str] = {}
-    for name, draw in PICTURES.items():
+    files = {name: (draw, out / f"{name}.png") for name, draw in PICTURES.items()}
+    for name, (draw, file) in {**files, "modes": (draw_modes, out / _MODES)}.items():
         try:
-            draw(paths, out / f"{name}.png")
+            draw(paths, file)
         except NothingToDraw as reason:
             missing[name] = str(reason)
-            log.info("%s.png is not drawn: %s", name, reason)
+            log.info("%s is not drawn: %s", file.name, reason)
     _write_captions(paths, out, [name for name in PICTURES if name not in missing])
     return missing
 
