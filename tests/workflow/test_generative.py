@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -103,6 +104,19 @@ def test_pictures_and_page(generative: Project) -> None:
     page = (generative / "report/index.html").read_text()
     for name in (*selected(generative), "Data set and embedding", "Novelty and diversity"):
         assert name in page
+
+
+def test_the_report_has_captions(generative: Project, tmp_path: Path) -> None:
+    answer = generative.snakemake("--report", str(tmp_path / "report.zip"))
+    assert answer.returncode == 0, answer.stderr
+    shutil.unpack_archive(tmp_path / "report.zip", tmp_path / "unpacked")
+    text = "".join(
+        path.read_text(errors="replace")
+        for path in (tmp_path / "unpacked").rglob("*")
+        if path.suffix in (".html", ".js")
+    )
+    for caption in ("Fig. 4a of the paper", "Convex hulls of random", "by its novelty"):
+        assert caption in text
 
 
 def test_a_second_run_does_nothing(generative: Project) -> None:
