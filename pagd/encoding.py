@@ -7,7 +7,7 @@ and the categories are computed from them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -67,10 +67,18 @@ class Encoder(TransformerMixin, BaseEstimator):  # type: ignore[misc]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Decoded:
-    """Independent parameters that can be drawn, and how often each had to be corrected."""
+    """Independent parameters that can be drawn, and which of them had to be corrected.
+
+    parameters: n rows, one column a symbol. corrected: the same, true or false.
+    """
 
     parameters: pd.DataFrame
-    corrections: dict[str, int] = field(default_factory=dict)
+    corrected: pd.DataFrame
+
+    @property
+    def corrections(self) -> dict[str, int]:
+        """How many designs were corrected, by symbol; without those that never were."""
+        return {str(key): int(n) for key, n in self.corrected.sum().items() if n}
 
 
 class Limiter:
@@ -78,7 +86,7 @@ class Limiter:
 
     N becomes a whole number and alpha the share of whole chambers, theta is 0 where none is
     helical. Everything is kept within the range of the training designs (theta within that of
-    the slanted ones); the corrections count where that took more than rounding.
+    the slanted ones); a value counts as corrected where that took more than rounding.
     """
 
     def __init__(self, training: pd.DataFrame) -> None:
@@ -97,8 +105,7 @@ class Limiter:
         found["theta"] = found["theta"].where(helical, low[INDEPENDENT.index("theta")])
         limited = pd.DataFrame(np.clip(found.to_numpy(), low, high), columns=found.columns)
         beyond = (limited - found).abs() > 0.5 * 10.0**-DECIMALS
-        corrections = {str(key): int(count) for key, count in beyond.sum().items() if count}
-        return Decoded(_rounded(limited), corrections)
+        return Decoded(_rounded(limited), beyond)
 
 
 def _rounded(parameters: pd.DataFrame) -> pd.DataFrame:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pagd.encoding import Decoded, Encoder
 
-__all__ = ["Embedding"]
+__all__ = ["Embedding", "Interpolating"]
 
 FloatArray = NDArray[np.float64]
 
@@ -42,4 +42,13 @@ class Embedding(Protocol):
 
     def decode(self, points: FloatArray) -> Decoded:
         """Return the designs at places (m, d) as independent parameters, in limits."""
+        ...
+
+
+@runtime_checkable
+class Interpolating(Protocol):
+    """An embedding that decodes from the training designs near by."""
+
+    def decode_left_out(self, training: NDArray[np.int64]) -> Decoded:
+        """Decode the places of training designs (m,) as if each were not among them."""
         ...

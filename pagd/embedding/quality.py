@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from sklearn.manifold import trustworthiness
 
 from pagd.dataset.frame import INDEPENDENT
-from pagd.embedding.interface import Embedding
-from pagd.embedding.tsne import TSNE
+from pagd.embedding.interface import Embedding, Interpolating
 from pagd.encoding import Encoder
 
 __all__ = ["Quality", "quality_of"]
@@ -78,7 +77,7 @@ def _trustworthiness(vectors: FloatArray, points: FloatArray) -> float:
 
 
 def _left_out_error(embedding: Embedding, rows: NDArray[np.int64]) -> float | None:
-    if not isinstance(embedding, TSNE):
+    if not isinstance(embedding, Interpolating):
         return None
     decoded = embedding.decode_left_out(rows).parameters
     return _error(embedding.encoder, embedding.designs.iloc[rows], decoded)

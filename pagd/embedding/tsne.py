@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pagd.embedding.decoder import NeighbourDecoder
 from pagd.encoding import Decoded, Encoder
+from pagd.errors import InputError
 
 __all__ = ["TSNE"]
 
@@ -45,12 +46,19 @@ class TSNE:
     encoder: Encoder
 
     def __init__(self, perplexity: float = 30.0, neighbours: int = 5, threads: int = -1) -> None:
+        if neighbours < 1:
+            raise InputError(f"embedding.neighbours = {neighbours} must be at least 1.")
         self.perplexity, self.neighbours, self.threads = perplexity, neighbours, threads
 
     def fit(self, designs: pd.DataFrame, seed: int = 1) -> TSNE:
         """Place the designs, starting from their principal components."""
         import openTSNE
 
+        if not 0 < self.perplexity <= len(designs) / 3:
+            raise InputError(
+                f"embedding.perplexity = {self.perplexity:g} must be greater than 0 and at most a "
+                f"third of the number of designs, {len(designs) / 3:.4g}."
+            )
         vectors = Encoder().fit(designs).transform(designs)
         method = openTSNE.TSNE(
             perplexity=self.perplexity,

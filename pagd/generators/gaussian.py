@@ -54,6 +54,12 @@ class ReducedSpaceMixture:
         largest_components: int = 10,
         bridge_share: float = 1 / 3,
     ) -> None:
+        if components != "bic" and components < 1:
+            raise InputError(f"generator.components = {components} must be at least 1, or bic.")
+        if not 0 <= bridge_share < 1:
+            raise InputError(
+                f"generator.bridge_share = {bridge_share} must be at least 0 and less than 1."
+            )
         self.components, self.largest_components = components, largest_components
         self.bridge_share = bridge_share
         #: Criterion by number of Gaussians, lower is better: of the plane, and where it decides.
@@ -63,6 +69,7 @@ class ReducedSpaceMixture:
         """Fit the mixture to the training designs' places."""
         self._embedding = self._space(embedding)
         points = self._embedding.points
+        self._check_count(len(points))
         slanted = self._embedding.designs["N1"].to_numpy() > 0
         if self.components == "bic" or self.shows_bic:
             self.bic = bic_curve(points, range(1, self.largest_components + 1), seed)
@@ -78,21 +85,24 @@ class ReducedSpaceMixture:
             parameters=decoded.parameters,
             points=points,
             components=components,
-            corrections=decoded.corrections,
+            corrected=decoded.corrected,
             redrawn=redrawn,
         )
 
     def _leave_the_islands(
         self, points: FloatArray, components: IntArray, rng: np.random.Generator
-    ) -> int:
-        """Draw the bridge's points again until each decodes to a mixed design; how many."""
-        wrong, redrawn = np.flatnonzero(components == self.mixture.bridge), 0
+    ) -> IntArray:
+        """Draw the bridge's points again until each decodes to a mixed design; how often (n,)."""
+        redrawn, bridge = np.zeros(len(points), np.int64), self.mixture.bridge
+        if bridge is None:
+            return redrawn
+        wrong = np.flatnonzero(components == bridge)
         for _ in range(_TRIES):
-            wrong = wrong[~self._is_mixed(points[wrong])] if len(wrong) else wrong
+            wrong = wrong[~self._is_mixed(points[wrong])]
             if len(wrong) == 0:
                 return redrawn
-            points[wrong] = self.mixture.sample_of(self.mixture.bridge or 0, len(wrong), rng)
-            redrawn += len(wrong)
+            points[wrong] = self.mixture.sample_of(bridge, len(wrong), rng)
+            redrawn[wrong] += 1
         raise InputError(
             f"generator.bridge_share = {self.bridge_share:g} must be 0 for these designs: between "
             f"their two categories hardly any point decodes to a mixed design."
@@ -100,10 +110,19 @@ class ReducedSpaceMixture:
 
     def _is_mixed(self, points: FloatArray) -> NDArray[np.bool_]:
         designs = designs_of(self._embedding.decode(points).parameters)
-        return np.array([design.mode == "mixed" for design in designs])
+        return np.array([design.mode == "mixed" for design in designs], dtype=np.bool_)
 
     def _space(self, embedding: Embedding) -> Embedding:
         return embedding
+
+    def _check_count(self, designs: int) -> None:
+        asked = {"components": self.components, "largest_components": self.largest_components}
+        for key, value in asked.items():
+            if value != "bic" and value > designs:
+                raise InputError(
+                    f"generator.{key} = {value} must be at most the number of training designs, "
+                    f"{designs}."
+                )
 
     def _count(self) -> int:
         if self.components == "bic":
@@ -134,7 +153,7 @@ class FullSpaceMixture(ReducedSpaceMixture):
         return Proposal(
             parameters=proposal.parameters,
             components=proposal.components,
-            corrections=proposal.corrections,
+            corrected=proposal.corrected,
             redrawn=proposal.redrawn,
         )
 

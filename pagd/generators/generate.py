@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
-from pagd.dataset.frame import completed, designs_of
+from pagd.dataset.frame import completed, designs_of, frame_of
 from pagd.design import Design, GeometryRules, Mode, violations
+from pagd.encoding import Encoder
 from pagd.errors import InputError
 from pagd.generators.interface import Generator, Proposal
 
@@ -49,6 +51,7 @@ def generate(
     rules: GeometryRules | None = None,
     seed: int = 1,
     mode: Mode | None = None,
+    least_novelty: float = 0.1,
 ) -> Generated:
     """Draw designs until there are ``count`` usable ones.
 
@@ -67,19 +70,31 @@ def generate(
         Of the draw.
     mode
         Take designs of this mode only.
+    least_novelty
+        What is nearer than this to a training design, in the encoded space, counts as a copy of
+        it: 0.1 of a standard deviation is some tenths of a millimetre in one size.
 
     Raises
     ------
     InputError
-        If the generator gives (nearly) no usable designs, and why they were refused.
+        If count or mode is unusable, or the generator gives (nearly) no usable designs, and why
+        they were refused.
     """
-    sieve = _Sieve(generator, training, rules or GeometryRules(), mode)
+    _check(count, mode)
+    sieve = _Sieve(generator, training, rules or GeometryRules(), mode, least_novelty)
     rng = np.random.default_rng(seed)
     while len(sieve.taken) < count:
         sieve.take(generator.propose(max(count - len(sieve.taken), _SMALLEST_ROUND), rng), count)
         if sieve.in_vain >= _HOPELESS:
             raise InputError(_complaint(generator, count, sieve, mode))
     return sieve.result()
+
+
+def _check(count: int, mode: str | None) -> None:
+    if count < 1:
+        raise InputError(f"generator.designs = {count} must be at least 1.")
+    if mode is not None and mode not in _MODES:
+        raise InputError(f"mode = {mode!r} must be one of {', '.join(_MODES)}.")
 
 
 @dataclass(slots=True)
@@ -90,6 +105,7 @@ class _Sieve:
     training: pd.DataFrame
     rules: GeometryRules
     mode: Mode | None
+    least_novelty: float
     taken: list[Design] = field(default_factory=list)
     points: list[FloatArray] = field(default_factory=list)
     components: list[int] = field(default_factory=list)
@@ -101,17 +117,23 @@ class _Sieve:
     broken: Counter[str] = field(default_factory=Counter)
     corrections: Counter[str] = field(default_factory=Counter)
 
+    encoder: Encoder = field(init=False)
+    tree: KDTree = field(init=False)
+
     def __post_init__(self) -> None:
         if not self.generator.copies_training:
             self.known = set(designs_of(self.training))
+        self.encoder = Encoder().fit(self.training)
+        self.tree = KDTree(self.encoder.transform(self.training))
 
     def take(self, proposal: Proposal, count: int) -> None:
         """Take what is usable of a proposal, as long as there are fewer than ``count``."""
-        self.corrections.update(proposal.corrections)
-        self.redrawn += proposal.redrawn
-        for i, design in enumerate(designs_of(proposal.parameters)):
+        designs = designs_of(proposal.parameters)
+        far = self._is_new(designs)
+        for i, design in enumerate(designs):
             self.tally["proposed"] += 1
-            reason = self._refusal(design)
+            self._note(proposal, i)
+            reason = self._refusal(design, bool(far[i]))
             if reason is not None:
                 self.tally[reason] += 1
                 self.in_vain += 1
@@ -126,14 +148,29 @@ class _Sieve:
             if len(self.taken) == count:
                 return
 
-    def _refusal(self, design: Design) -> str | None:
+    def _note(self, proposal: Proposal, row: int) -> None:
+        """Count what it took to make a row of a proposal."""
+        if proposal.corrected is not None:
+            self.corrections.update(proposal.corrected.columns[proposal.corrected.iloc[row]])
+        if proposal.redrawn is not None:
+            self.redrawn += int(proposal.redrawn[row])
+
+    def _is_new(self, designs: list[Design]) -> NDArray[np.bool_]:
+        """Whether each design is at least so far from every training design as is asked for."""
+        if self.generator.copies_training or self.least_novelty == 0:
+            return np.ones(len(designs), dtype=np.bool_)
+        frame = frame_of(designs, map(str, range(len(designs))), "generated")
+        distances, _ = self.tree.query(self.encoder.transform(frame))
+        return np.asarray(distances >= self.least_novelty)
+
+    def _refusal(self, design: Design, is_new: bool) -> str | None:
         if self.mode not in (None, design.mode):
             return "other_mode"
         keys = {violation.key for violation in violations(design, self.rules)}
         if keys:
             self.broken.update(keys)
             return "invalid"
-        if design in self.known:
+        if not is_new or design in self.known:
             return "copies_of_training"
         return "duplicates" if design in self.seen else None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -24,15 +24,16 @@ class Proposal:
     points: (n, d) places in the reduced space that they were decoded from; None where the
         generator does not draw there.
     components: (n,) index of the Gaussian that each was drawn from; None without a mixture.
-    corrections: how many values had to be brought into limits, by parameter.
-    redrawn: how many draws of its own the generator has replaced by others.
+    corrected: which parameters had to be brought into limits, as a table of true and false; None
+        where none had.
+    redrawn: (n,) how many draws of its own the generator has replaced before each; None: none.
     """
 
     parameters: pd.DataFrame
     points: FloatArray | None = None
     components: NDArray[np.int64] | None = None
-    corrections: dict[str, int] = field(default_factory=dict)
-    redrawn: int = 0
+    corrected: pd.DataFrame | None = None
+    redrawn: NDArray[np.int64] | None = None
 
 
 class Generator(Protocol):

@@ -39,9 +39,7 @@ class KernelDensityGenerator:
         """Sample the density and decode."""
         points = self._density.sample(count, random_state=int(rng.integers(2**31)))
         decoded = self._embedding.decode(points)
-        return Proposal(
-            parameters=decoded.parameters, points=points, corrections=decoded.corrections
-        )
+        return Proposal(parameters=decoded.parameters, points=points, corrected=decoded.corrected)
 
 
 def _scott(embedding: Embedding) -> float:

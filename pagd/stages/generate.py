@@ -114,6 +114,7 @@ def _generated(
             rules=rules,
             seed=settings["seed"],
             mode=mode,
+            least_novelty=settings["least_novelty"],
         )
     return generator, generated
 

@@ -13,6 +13,7 @@ from pagd.embedding.decoder import NeighbourDecoder
 from pagd.embedding.linear import PrincipalComponents
 from pagd.embedding.quality import quality_of
 from pagd.embedding.tsne import TSNE
+from pagd.errors import InputError
 
 SECTION = {"perplexity": 15.0, "neighbours": 5, "dimensions": None}
 
@@ -100,6 +101,18 @@ def test_the_plane_keeps_neighbours_and_splits_the_categories() -> None:
     inside = np.linalg.norm(embedding.points[slanted] - embedding.points[slanted].mean(0), axis=1)
     across = np.linalg.norm(embedding.points[~slanted] - embedding.points[slanted].mean(0), axis=1)
     assert across.min() > np.percentile(inside, 95)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"neighbours": 0}, r"^embedding.neighbours = 0 must be at least 1\.$"),
+        ({"perplexity": 81.0}, r"^embedding.perplexity = 81 must be .* of designs, 80\.$"),
+    ],
+)
+def test_a_plane_that_cannot_be_is_refused(options: dict[str, float], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        TSNE(**options).fit(training())
 
 
 def test_the_plane_does_not_hang_on_the_threads() -> None:

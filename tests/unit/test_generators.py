@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
 from design_samples import plane, training
+from scipy.spatial import KDTree
 
 from pagd.dataset.frame import DEPENDENT, INDEPENDENT, designs_of
 from pagd.design import GeometryRules, Limits, violations
@@ -81,6 +83,33 @@ def test_places_and_gaussians_belong_to_the_designs(
         assert designs_of(decoded) == designs_of(generated.designs)
 
 
+def test_none_is_next_to_a_training_design(generator: Generator, generated: Generated) -> None:
+    encoder = plane().encoder
+    tree = KDTree(encoder.transform(training()))
+    usual = tree.query(encoder.transform(generated.designs))[0]
+    least = float(np.median(usual))
+    found = drawn(generator, least_novelty=least)
+    distances = tree.query(encoder.transform(found.designs))[0]
+    if generator.copies_training:
+        assert distances.max() < 1e-9
+    else:
+        assert distances.min() >= least
+        assert found.report["refused"]["copies_of_training"] > 0
+
+
+def test_corrections_are_those_of_designs_that_were_looked_at(generator: Generator) -> None:
+    few, many = (
+        generate(generator, n, training=training(), rules=RULES).report for n in (3, COUNT)
+    )
+    assert all(count <= few["proposed"] for count in few["corrections"].values())
+    assert sum(few["corrections"].values()) <= sum(many["corrections"].values())
+    assert few["redrawn_by_generator"] <= many["redrawn_by_generator"]
+
+
+def test_limits_of_the_full_space_are_counted() -> None:
+    assert drawn(made("gmm_full")).report["corrections"]["N"] > 0
+
+
 def test_the_report_adds_up(generated: Generated) -> None:
     report = generated.report
     assert report["proposed"] == COUNT + sum(report["refused"].values())
@@ -152,6 +181,26 @@ def test_a_bridge_without_a_gap_is_told() -> None:
         drawn(generator)
 
 
+@pytest.mark.parametrize(
+    ("fault", "sentence"),
+    [
+        ({"components": 0}, "generator.components = 0 must be at least 1, or bic."),
+        ({"components": 500}, "generator.components = 500 must be at most the number of training"),
+        ({"bridge_share": 2.0}, "generator.bridge_share = 2.0 must be at least 0 and less than 1."),
+    ],
+)
+def test_a_mixture_that_cannot_be_is_refused(fault: dict[str, float], sentence: str) -> None:
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        made("gmm", **fault)
+
+
+def test_what_is_asked_for_must_make_sense() -> None:
+    with pytest.raises(InputError, match=r"^generator.designs = 0 must be at least 1\.$"):
+        generate(made("random"), 0, training=training())
+    with pytest.raises(InputError, match=r"^mode = 'bent' must be one of bending, twisting, mix"):
+        drawn(made("random"), mode="bent")
+
+
 def test_what_cannot_be_had_is_told_in_one_sentence() -> None:
     with pytest.raises(InputError, match=r"^generator.method = resample must give 120 mixed des"):
         drawn(made("resample"), mode="mixed")
@@ -178,8 +227,6 @@ def test_the_number_of_gaussians_by_criterion() -> None:
 
 
 def test_a_wider_kernel_strays_farther() -> None:
-    from scipy.spatial import KDTree
-
     tree = KDTree(plane().points)
     near, far = (tree.query(drawn(made("kde", bandwidth=h)).points)[0].mean() for h in (0.1, 2.0))
     assert far > 3 * near
