@@ -19,16 +19,14 @@ from sklearn.manifold import TSNE as PEER
 from sklearn.manifold import trustworthiness
 
 from pagd import TSNE, Encoder, make_dataset
-from pagd.catalogue import read_designs
 
 PERPLEXITY = 30
-TABLES = {"table2": "config/table2.csv", "published": "config/published_designs.csv"}
 
 
 def main() -> None:
     """Print one row a library, and the ratio of the times."""
     options = _options()
-    designs = make_dataset(options.size, published=[*read_designs(TABLES).values()]).designs
+    designs = make_dataset(options.size).designs
     vectors = Encoder().fit_transform(designs)
 
     def ours() -> NDArray[np.float64]:

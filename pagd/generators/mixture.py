@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.mixture import GaussianMixture
 
-__all__ = ["Mixture", "barycentre", "bic_curve", "fit_mixture"]
+__all__ = ["Mixture", "barycentre", "bic_curve", "fit_mixture", "transport"]
 
 FloatArray = NDArray[np.float64]
 
@@ -112,8 +112,15 @@ def barycentre(
 ) -> tuple[FloatArray, FloatArray]:
     """Return mean and covariance of the Wasserstein barycentre of two Gaussians, each (m, S)."""
     (mean_1, covariance_1), (mean_2, covariance_2) = first, second
-    half = (np.eye(len(mean_1)) + _transport(covariance_1, covariance_2)) / 2
+    half = (np.eye(len(mean_1)) + transport(covariance_1, covariance_2)) / 2
     return (mean_1 + mean_2) / 2, half @ covariance_1 @ half
+
+
+def transport(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Return the matrix A of the optimal transport of N(0, first) to N(0, second)."""
+    root = _root(first)
+    inverse = np.linalg.inv(root)
+    return np.asarray(inverse @ _root(root @ second @ root) @ inverse)
 
 
 def bic_curve(points: FloatArray, components: Iterable[int], seed: int = 1) -> dict[int, float]:
@@ -147,13 +154,6 @@ def _moments(points: FloatArray, floor: float) -> tuple[FloatArray, FloatArray]:
 def _floor(points: FloatArray) -> float:
     """Variance added in every direction: alpha, for one, has none within a category."""
     return 1e-6 * max(float(points.var(axis=0).mean()), 1e-12)
-
-
-def _transport(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Matrix A of the optimal transport of N(0, first) to N(0, second)."""
-    root = _root(first)
-    inverse = np.linalg.inv(root)
-    return np.asarray(inverse @ _root(root @ second @ root) @ inverse)
 
 
 def _root(matrix: FloatArray) -> FloatArray:
