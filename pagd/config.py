@@ -41,7 +41,7 @@ SECTIONS = {
     "dataset": ("channel", "limits", "dataset"),
     "embedding": ("embedding",),
     "generate": ("channel", "limits", "generator"),
-    "diversity": ("channel", "limits", "generator", "diversity"),
+    "diversity": ("diversity",),
     "selection": ("selection",),
 }
 
@@ -106,11 +106,16 @@ def check_study(config: Mapping[str, Any], where: str) -> None:
             "a third of dataset.size": size / 3,
             "a third of diversity.plane_designs": plane / 3,
         },
+        # A mixture is fitted to the plane of the data set, and to that of a few designs.
+        **{
+            ("generator", key): {"dataset.size": size, "diversity.plane_designs": plane}
+            for key in ("components", "largest_components")
+        },
     }
     for (section, key), bounds in limits.items():
         value = config[section][key]
         for name, bound in bounds.items():
-            if value > bound:
+            if value != "bic" and value > bound:
                 raise InputError(
                     f"{where}: {section}.{key} = {value:g} must be at most {name} = {bound:g}."
                 )

@@ -87,10 +87,23 @@ def test_a_bad_file_is_told_in_one_sentence(tmp_path: Path, text: str, words: st
             {"diversity": {"plane_designs": 60}},
             "embedding.perplexity = 30 must be at most a third of diversity.plane_designs = 20.",
         ),
+        (
+            {"generator": {"components": 20_000}},
+            "generator.components = 20000 must be at most dataset.size = 11000.",
+        ),
+        (
+            {
+                "embedding": {"perplexity": 10},
+                "generator": {"components": "bic", "largest_components": 50},
+                "diversity": {"plane_designs": 40},
+            },
+            "generator.largest_components = 50 must be at most diversity.plane_designs = 40.",
+        ),
     ],
 )
-def test_what_sections_ask_of_each_other(given: dict[str, dict[str, int]], words: str) -> None:
-    config.check_study(config.load(None), "configuration")
+def test_what_sections_ask_of_each_other(given: dict[str, dict[str, object]], words: str) -> None:
+    for fine in (None, '{"generator": {"components": "bic"}}'):
+        config.check_study(config.load(fine), "configuration")
     with pytest.raises(InputError, match=r"^configuration: ") as caught:
         config.check_study(config.load(json.dumps(given)), "configuration")
     assert words in str(caught.value)
