@@ -13,7 +13,15 @@ from pathlib import Path
 
 from pagd.errors import InputError
 
-__all__ = ["replaced_file", "replaced_folder", "write_text"]
+__all__ = ["must_exist", "replaced_file", "replaced_folder", "write_text"]
+
+
+def must_exist(file: Path) -> None:
+    """Refuse a file that is not there, with ``InputError``; it names the folder if that is not."""
+    if not file.parent.exists():
+        raise InputError(f"{file.parent}: there is no such folder.")
+    if not file.exists():
+        raise InputError(f"{file}: there is no such file.")
 
 
 @contextmanager

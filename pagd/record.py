@@ -16,7 +16,7 @@ from typing import Any
 
 from pagd import __version__
 from pagd.errors import InputError, Status
-from pagd.files import replaced_folder, write_text
+from pagd.files import must_exist, replaced_folder, write_text
 from pagd.validation import check, faults
 
 __all__ = [
@@ -81,6 +81,7 @@ def read_record(folder: Path) -> Record:
         If there is none, or it is not a record.
     """
     path = folder / RECORD_NAME
+    must_exist(path)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:

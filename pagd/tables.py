@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pagd.design import PARAMETERS
 from pagd.errors import InputError
-from pagd.files import replaced_file
+from pagd.files import must_exist, replaced_file
 
 __all__ = [
     "DESIGNS",
@@ -221,6 +221,7 @@ def concatenate(path: Path, parts: Sequence[Path], columns: Sequence[Column]) ->
 
 
 def _read(path: Path) -> Any:
+    must_exist(path)
     try:
         return pq.read_table(path)
     except (OSError, pa.ArrowInvalid) as error:

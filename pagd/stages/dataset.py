@@ -12,6 +12,7 @@ import pandas as pd
 from pagd.catalogue import NamedDesign, read_designs
 from pagd.config import known_tables, part
 from pagd.dataset import make_dataset, read_frame, write_frame
+from pagd.files import must_exist
 from pagd.record import Meter, Record
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
@@ -63,7 +64,13 @@ def load_dataset(dataset: Path) -> pd.DataFrame:
 
 
 def digest_of(dataset: Path) -> str:
-    """Return what tells one data set from another: a digest of its file."""
+    """Return what tells one data set from another: a digest of its file.
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
+    """
     return _digest(_file(dataset))
 
 
@@ -76,4 +83,5 @@ def _file(dataset: Path) -> Path:
 
 
 def _digest(file: Path) -> str:
+    must_exist(file)
     return hashlib.sha256(file.read_bytes()).hexdigest()[:16]

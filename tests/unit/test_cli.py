@@ -76,7 +76,7 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
             ["design", "check", json.dumps(GOOD), "--config", '{"limits": {"gap": 1}}'],
             "pagd: configuration: limits.gap is not a known key (did you mean gap_mm?)",
         ),
-        (["repair", "--geometry", "absent", "--out", "out"], "pagd: absent/record.json: not a rea"),
+        (["repair", "--geometry", "absent", "--out", "out"], "pagd: absent: there is no such fold"),
         (["mesh", "--body", "b.stl", "--out", "out"], "pagd: --body and --base must be given toge"),
         (["mesh", "--out", "out"], "pagd: mesh needs either --geometry and --repair, or --body"),
         (["mesh", "--size-mm", "nan", "--out", "out"], "pagd: command line: mesh.size_mm = nan mu"),
@@ -110,7 +110,7 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
         ),
         (
             ["embed", "--dataset", "absent", "--out", "out"],
-            "pagd: absent/designs.parquet: not a",
+            "pagd: absent: there is no such fold",
         ),
         (
             ["generate", "--generator", "x", "--out", "out"],

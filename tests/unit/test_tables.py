@@ -75,9 +75,13 @@ def test_concatenating_nothing_gives_an_empty_table(tmp_path: Path) -> None:
 
 def test_a_broken_file_is_an_input_error(tmp_path: Path) -> None:
     (tmp_path / "t.parquet").write_text("no table")
-    for path in (tmp_path / "t.parquet", tmp_path / "absent.parquet"):
-        with pytest.raises(InputError, match=r"not a readable Parquet table"):
-            read_table(path)
+    for name, words in (
+        ("t.parquet", r"t\.parquet: not a readable Parquet table"),
+        ("absent.parquet", r"absent\.parquet: there is no such file\.$"),
+        ("absent/t.parquet", r"absent: there is no such folder\.$"),
+    ):
+        with pytest.raises(InputError, match=words):
+            read_table(tmp_path / name)
 
 
 def test_units_agree_with_the_names() -> None:
