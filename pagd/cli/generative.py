@@ -104,8 +104,9 @@ def select(options: Namespace) -> int:
 
     record = stage.run(options.dataset, options.generated, options.out, config_of(options))
     found = record.figures
+    modes = f" ({_listed(found['modes'])})" if found["modes"] else ""
     print(
-        f"{found['designs']} of {found['candidates']} designs ({_listed(found['modes'])}) "
+        f"{found['designs']} of {found['candidates']} designs{modes} "
         f"in {options.out / stage.SELECTION_NAME}"
     )
     return 0

@@ -13,8 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pagd.config import part
-from pagd.dataset import read_frame
+from pagd.config import completed, part
 from pagd.diversity import (
     METRICS,
     TRAINING,
@@ -25,13 +24,13 @@ from pagd.diversity import (
     places_of_mode,
     plane_novelty_over_seeds,
 )
-from pagd.embedding import Embedding
+from pagd.embedding import Embedding, make_embedding
 from pagd.errors import InputError
 from pagd.files import write_text
 from pagd.generators import GENERATORS, Generated, generate, make_generator
 from pagd.record import Meter, Record, read_record
-from pagd.stages.dataset import DESIGNS_NAME
-from pagd.stages.embedding import check_perplexity, load_embedding, new_embedding
+from pagd.stages.embedding import check_perplexity, load_embedding
+from pagd.stages.generated import load_generated
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import Column, write_rows
@@ -85,20 +84,27 @@ def run(
     Parameters
     ----------
     dataset, embedding, generated
-        Folders of the stages before. The designs of the configured generator are those of
-        ``generated``; every other generator draws as many.
+        Folders of the stages before. What made ``generated`` (generator, rules) is taken from
+        its record; every other generator draws as many designs in the same way.
     out
         Folder of the stage.
     config
-        Completed configuration; uses ``channel``, ``limits``, ``generator`` and ``diversity``.
+        Completed configuration; uses ``diversity``.
     threads
         Threads of the embeddings.
+
+    Raises
+    ------
+    InputError
+        If a stage before is missing or of another data set, or its designs are of one mode
+        because no other was wanted.
     """
     settings = config["diversity"]
     space = load_embedding(dataset, embedding, threads=threads)
     method = read_record(embedding).configuration["embedding"]
+    frame, record = load_generated(dataset, generated)
+    config = part(config, "diversity") | _made_with(record, generated)
     own = config["generator"]["method"]
-    frame = read_frame(generated / DESIGNS_NAME)
     _check(settings, method, len(space.designs))
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
@@ -123,9 +129,21 @@ def run(
         out,
         work,
         design_id=ALL_DESIGNS,
-        configuration=part(config, "diversity"),
+        configuration=config,
         libraries=("numpy", "openTSNE", "pandas", "scikit-learn", "scipy"),
     )
+
+
+def _made_with(record: Record, generated: Path) -> dict[str, Any]:
+    """Return the sections of the configuration that the generated designs were made with."""
+    mode = record.configuration.get("mode")
+    if mode is not None:
+        # Beside generators that draw as they come, its figures would say little of its own.
+        raise InputError(
+            f"generated = {generated} must hold the designs as they come, but has only those "
+            f"of mode = {mode}."
+        )
+    return part(completed(record.configuration), "generate")
 
 
 def _check(settings: Mapping[str, Any], method: Mapping[str, Any], size: int) -> None:
@@ -154,7 +172,12 @@ def _draw(
         try:
             generator = make_generator(section, rules).fit(space, seed)
             drawn.given[name] = generate(
-                generator, count, training=space.designs, rules=rules, seed=seed
+                generator,
+                count,
+                training=space.designs,
+                rules=rules,
+                seed=seed,
+                least_novelty=section["least_novelty"],
             )
         except InputError as error:
             # Resampling, for one, cannot give more designs than there are.
@@ -212,7 +235,7 @@ class _PlaneOfFew:
         rng = np.random.default_rng(seed)
         few = rng.choice(len(self.designs), self.config["diversity"]["plane_designs"], False)
         training = self.designs.iloc[np.sort(few)].reset_index(drop=True)
-        space = new_embedding(self.method, self.threads).fit(training, seed)
+        space = make_embedding(self.method, self.threads).fit(training, seed)
         names = dict.fromkeys((self.config["generator"]["method"], "gmm_plain", "random"))
         drawn = _draw(names, space, self.config, self.count, seed).given
         return space.points, {

@@ -19,7 +19,7 @@ from pagd.stages.dataset import digest_of, load_dataset
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import Column, read_table, write_table
 
-__all__ = ["POINTS_NAME", "check_perplexity", "load_embedding", "new_embedding", "run"]
+__all__ = ["POINTS_NAME", "check_perplexity", "load_embedding", "run"]
 
 POINTS_NAME = "points.parquet"
 
@@ -49,7 +49,7 @@ def run(dataset: Path, out: Path, config: Mapping[str, Any], *, threads: int = 1
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("fit"):
-            embedding = new_embedding(settings, threads).fit(designs, settings["seed"])
+            embedding = make_embedding(settings, threads).fit(designs, settings["seed"])
         _write(embedding, folder)
         with meter.part("quality"):
             quality = quality_of(embedding, seed=settings["seed"])
@@ -76,9 +76,14 @@ def load_embedding(dataset: Path, embedding: Path, *, threads: int = 1) -> Embed
     Raises
     ------
     InputError
-        If there is none, or it is that of another data set.
+        If there is none, or it is that of another data set or stage.
     """
     record = read_record(embedding)
+    if record.stage != "embedding":
+        raise InputError(
+            f"embedding = {embedding} must be a folder of the stage embedding, "
+            f"but is one of the stage {record.stage}."
+        )
     if record.figures.get("dataset_sha256") != digest_of(dataset):
         raise InputError(
             f"embedding = {embedding} must be made of the data set {dataset}, "
@@ -86,7 +91,7 @@ def load_embedding(dataset: Path, embedding: Path, *, threads: int = 1) -> Embed
         )
     columns = read_table(embedding / POINTS_NAME)
     points = np.column_stack([values for name, values in columns.items() if name != "design_id"])
-    made = new_embedding(record.configuration["embedding"], threads)
+    made = make_embedding(record.configuration["embedding"], threads)
     return made.restore(load_dataset(dataset), _contiguous(points))
 
 
@@ -98,14 +103,6 @@ def check_perplexity(settings: Mapping[str, Any], count: int, what: str) -> None
             f"embedding.perplexity = {settings['perplexity']:g} must be at most a third of "
             f"{what}, {count}."
         )
-
-
-def new_embedding(settings: Mapping[str, Any], threads: int = 1) -> Embedding:
-    """Return the embedding, not fitted, that the section ``embedding`` asks for."""
-    embedding = make_embedding(settings)
-    if hasattr(embedding, "threads"):
-        embedding.threads = threads
-    return embedding
 
 
 def _contiguous(points: NDArray[Any]) -> NDArray[np.float64]:

@@ -11,12 +11,13 @@ from typing import Any
 import pandas as pd
 
 from pagd.config import part
-from pagd.dataset import INDEPENDENT, read_frame
+from pagd.dataset import INDEPENDENT
 from pagd.encoding import Encoder
 from pagd.files import write_text
 from pagd.record import Meter, Record
-from pagd.selection import choose
-from pagd.stages.dataset import DESIGNS_NAME, load_dataset
+from pagd.selection import MODES, choose
+from pagd.stages.dataset import load_dataset
+from pagd.stages.generated import load_generated
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 
 __all__ = ["SELECTION_NAME", "run"]
@@ -35,9 +36,14 @@ def run(dataset: Path, generated: Path, out: Path, config: Mapping[str, Any]) ->
         Folder of the stage.
     config
         Completed configuration; uses ``selection``.
+
+    Raises
+    ------
+    InputError
+        If the generated designs are missing, or made of another data set.
     """
     settings = config["selection"]
-    candidates = read_frame(generated / DESIGNS_NAME)
+    candidates, _ = load_generated(dataset, generated)
     encoder = Encoder().fit(load_dataset(dataset))
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
@@ -45,7 +51,8 @@ def run(dataset: Path, generated: Path, out: Path, config: Mapping[str, Any]) ->
         rows = choose(candidates, encoded, settings["designs"], settings["seed"])
         chosen = candidates.iloc[rows]
         write_text(folder / SELECTION_NAME, _as_csv(chosen))
-        modes = {str(mode): int(count) for mode, count in chosen["mode"].value_counts().items()}
+        counts = chosen["mode"].value_counts()
+        modes = {mode: int(counts[mode]) for mode in MODES if mode in counts}
         outcome.figures |= {"designs": len(chosen), "candidates": len(candidates), "modes": modes}
 
     return run_stage(

@@ -101,6 +101,62 @@ def test_another_data_set_is_refused(
     assert not (tmp_path / "generated").exists()
 
 
+@pytest.mark.parametrize("command", ["select", "diversity"])
+def test_generated_designs_must_be_those_of_the_data_set(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    """Neither those of another data set nor the folder of another stage."""
+    data, other = study / "dataset", tmp_path / "other"
+    assert run("dataset", "--seed", 2, "--out", other) == 0
+    assert run("embed", "--dataset", other, "--out", tmp_path / "embedding") == 0
+    for dataset, plane, generated, words in (
+        (other, tmp_path / "embedding", study / "generated", "but was made of another one."),
+        (data, study / "embedding", data, "but is one of the stage dataset."),
+    ):
+        made = ("--dataset", dataset, "--generated", generated, "--out", tmp_path / "out")
+        more = ("--embedding", plane) if command == "diversity" else ()
+        assert run(command, *made, *more) == 2
+        told = capsys.readouterr().err
+        assert f"pagd: generated = {generated} must be " in told
+        assert words in told
+        assert not (tmp_path / "out").exists()
+
+
+def test_an_embedding_is_the_folder_of_its_stage(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = ("--dataset", study / "dataset", "--embedding", study / "generated")
+    assert run("generate", *made, "--out", tmp_path / "g") == 2
+    assert "but is one of the stage generate." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("absent", ["dataset", "embedding", "generated"])
+def test_folders_that_are_not_there(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], absent: str
+) -> None:
+    folders = {name: study / name for name in ("dataset", "embedding", "generated")}
+    folders[absent] = tmp_path / "nope"
+    given = [word for name, folder in folders.items() for word in (f"--{name}", folder)]
+    assert run("diversity", *given, "--out", tmp_path / "out") == 2
+    assert capsys.readouterr().err == f"pagd: {tmp_path / 'nope'}: there is no such folder.\n"
+    folders[absent].mkdir()
+    assert run("diversity", *given, "--out", tmp_path / "out") == 2
+    assert capsys.readouterr().err.endswith(": there is no such file.\n")
+
+
+def test_the_modes_of_a_selection_are_told_in_order(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = ("--dataset", study / "dataset", "--generated", study / "generated")
+    for count, words in (
+        (5, "5 of 30 designs (2 bending, 2 twisting, 1 mixed) in "),
+        (3, "3 of 30 designs (1 bending, 1 twisting, 1 mixed) in "),
+        (0, "0 of 30 designs in "),
+    ):
+        assert run("select", *made, "-n", count, "--out", tmp_path / "s") == 0
+        assert capsys.readouterr().out.startswith(words)
+
+
 def test_too_large_a_perplexity_is_refused(
     study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,13 +193,40 @@ def test_generators_without_a_place_or_a_mixture(study: Path, tmp_path: Path, me
 def test_a_generator_without_places_is_compared_in_the_plane(study: Path, tmp_path: Path) -> None:
     made = ("--dataset", study / "dataset", "--embedding", study / "embedding")
     assert run("generate", *made, "--generator", "random", "--out", tmp_path / "g") == 0
-    config = json.dumps(SMALL | {"generator": SMALL["generator"] | {"method": "random"}})
-    out = ("--generated", tmp_path / "g", "--out", tmp_path / "d")
-    assert main(["diversity", *map(str, (*made, *out)), "--config", config]) == 0
+    assert run("diversity", *made, "--generated", tmp_path / "g", "--out", tmp_path / "d") == 0
     found = read_record(tmp_path / "d").figures
-    assert found["generator"] == "random"
     assert found["novelty_plane"]["random"] > 0
+    assert found["novelty_plane_sample"]["random"] > 0
     assert found["mode_share"]["random"].keys() == {"bending", "twisting"}
+
+
+def test_the_comparison_goes_by_what_made_the_designs(study: Path, tmp_path: Path) -> None:
+    """Method, parameters and limits are those of the record, not of the configuration given."""
+    made = ("--dataset", study / "dataset", "--embedding", study / "embedding")
+    given = {"method": "gmm_full", "components": 4, "seed": 5, "designs": 20}
+    config = json.dumps(SMALL | {"generator": given, "limits": {"theta_deg": 40.0}})
+    first = ("generate", *made, "--out", tmp_path / "g", "--config", config)
+    assert main([str(word) for word in first]) == 0
+    assert run("diversity", *made, "--generated", tmp_path / "g", "--out", tmp_path / "d") == 0
+    record, by = read_record(tmp_path / "d"), read_record(tmp_path / "g").configuration
+    assert {key: record.configuration[key] for key in by if key != "mode"} == {
+        key: value for key, value in by.items() if key != "mode"
+    }
+    assert record.figures["generator"] == "gmm_full"
+    assert record.figures["reports"].keys() == {"gmm", "gmm_plain", "kde", "random", "resample"}
+    assert {report["designs"] for report in record.figures["reports"].values()} == {20}
+    table = read_rows(tmp_path / "d/comparison.parquet")
+    assert table[0]["generator"] == "gmm_full"
+    assert {row["generator"] for row in table if row["space"] == "plane_sample"} >= {"gmm_full"}
+
+
+def test_designs_of_one_mode_alone_are_not_compared(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = ("--dataset", study / "dataset", "--embedding", study / "embedding")
+    assert run("generate", *made, "-n", 5, "--mode", "mixed", "--out", tmp_path / "g") == 0
+    assert run("diversity", *made, "--generated", tmp_path / "g", "--out", tmp_path / "d") == 2
+    assert "but has only those of mode = mixed." in capsys.readouterr().err
 
 
 def test_novelty_of_simulated_designs(study: Path, tmp_path: Path) -> None:

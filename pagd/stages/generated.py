@@ -1,0 +1,36 @@
+"""The generated designs as later stages take them up, and what they were made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+from pagd.dataset import read_frame
+from pagd.errors import InputError
+from pagd.record import Record, read_record
+from pagd.stages.dataset import DESIGNS_NAME, digest_of
+
+__all__ = ["load_generated"]
+
+
+def load_generated(dataset: Path, generated: Path) -> tuple[pd.DataFrame, Record]:
+    """Read generated designs and their record, from the folder of the stage generate.
+
+    Raises
+    ------
+    InputError
+        If it is the folder of another stage or none, or made of another data set.
+    """
+    record = read_record(generated)
+    if record.stage != "generate":
+        raise InputError(
+            f"generated = {generated} must be a folder of the stage generate, "
+            f"but is one of the stage {record.stage}."
+        )
+    if record.figures.get("dataset_sha256") != digest_of(dataset):
+        raise InputError(
+            f"generated = {generated} must be made of the data set {dataset}, "
+            "but was made of another one."
+        )
+    return read_frame(generated / DESIGNS_NAME), record
