@@ -25,6 +25,7 @@ __all__ = [
     "load",
     "material_as_json",
     "material_file",
+    "packaged_tables",
     "part",
     "part_as_json",
     "retyped",
@@ -174,12 +175,22 @@ def known_tables(config: Mapping[str, Any]) -> dict[str, str]:
     return {origin: str(_found(path, default.get(origin))) for origin, path in known.items()}
 
 
+def packaged_tables() -> dict[str, str]:
+    """Return the tables of known designs that come with pagd, by origin."""
+    default = completed({})["dataset"]["known"]
+    return {origin: str(_packaged(path)) for origin, path in default.items()}
+
+
 def _found(path: str, default: str | None) -> Path:
     """Return the path, or pagd's own copy if it is the default one and there is no such file."""
     file = Path(path)
     if file.is_file() or path != default:
         return file
-    return Path(str(importlib.resources.files("pagd") / "data" / file.name))
+    return _packaged(path)
+
+
+def _packaged(path: str) -> Path:
+    return Path(str(importlib.resources.files("pagd") / "data" / Path(path).name))
 
 
 def material_as_json(file: str, name: str, use: Use) -> str:

@@ -11,12 +11,14 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from numbers import Real
 from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 
-from pagd.catalogue import NamedDesign
+from pagd.catalogue import NamedDesign, read_designs
+from pagd.config import packaged_tables
 from pagd.dataset.augmentation import interpolated_designs, jittered_designs
 from pagd.dataset.category import CATEGORIES, Category, category_of
 from pagd.dataset.frame import frame_of
@@ -63,7 +65,7 @@ class _Plan:
 def make_dataset(
     size: int = 11_000,
     *,
-    published: Sequence[NamedDesign] = (),
+    published: Sequence[NamedDesign] | None = None,
     rules: GeometryRules = _DEFAULT_RULES,
     sampling: Method = "random",
     twisting_share: float = 0.5,
@@ -79,10 +81,11 @@ def make_dataset(
     size
         Number of designs.
     published
-        Known designs. Those that bend or twist are rows themselves, with their own origin (a
-        parameter that has no effect, as theta where nothing is slanted, set as in the rest of
-        the category), and designs are drawn around them. Mixed ones are no category of the
-        data set and are left out, as is what the rules refuse.
+        Known designs; None: the paper's own (Table 2) and the published actuators that come
+        with pagd; an empty sequence: none. Those that bend or twist are rows themselves, with
+        their own origin (a parameter that has no effect, as theta where nothing is slanted, set
+        as in the rest of the category), and designs are drawn around them. Mixed ones are no
+        category of the data set and are left out, as is what the rules refuse.
     rules
         The rules of the geometry, which every design keeps to.
     sampling
@@ -119,6 +122,8 @@ def make_dataset(
     if sampling not in METHODS:
         raise InputError(f"dataset.sampling = {sampling!r} must be one of {', '.join(METHODS)}.")
     sizes = _split(size, twisting_share, ("twisting", "bending"))
+    if published is None:
+        published = list(read_designs(packaged_tables()).values())
     known, left_out = _usable(published, rules, sizes)
     plans = [_plan(c, sizes[c], known, augmented_share, interpolated_share) for c in CATEGORIES]
     parts = _drawn(plans, known, rules, sampling, jitter, seed)
@@ -128,13 +133,18 @@ def make_dataset(
         "sampling": sampling,
         **_tally(parts),
         "left_out": left_out,
-        "notes": [_no_augmentation(p) for p in plans if augmented_share > 0 and not p.known],
+        "notes": [
+            _no_augmentation(plan)
+            for plan in plans
+            if augmented_share > 0 and sizes[plan.category] and not plan.known
+        ],
     }
     frame = _frame(known, parts)
     return Dataset(frame, report | {"counts": _counts(frame)})
 
 
 def _check_numbers(size: float, jitter: float, seed: float) -> None:
+    _check_types({"size": size, "jitter": jitter, "seed": seed})
     for key, number, least in (("size", size, 1), ("seed", seed, 0)):
         # YAML and JSON may spell a whole number 1e4.
         if not float(number).is_integer() or number < least:
@@ -147,9 +157,16 @@ def _check_numbers(size: float, jitter: float, seed: float) -> None:
 
 def _check_shares(twisting: float, augmented: float, interpolated: float) -> None:
     shares = {"twisting": twisting, "augmented": augmented, "interpolated": interpolated}
+    _check_types({f"{name}_share": share for name, share in shares.items()})
     for name, share in shares.items():
         if not 0 <= share <= 1:
             raise InputError(f"dataset.{name}_share = {share!r} must lie between 0 and 1.")
+
+
+def _check_types(numbers: Mapping[str, object]) -> None:
+    for key, number in numbers.items():
+        if isinstance(number, bool) or not isinstance(number, Real):
+            raise InputError(f"dataset.{key} = {number!r} must be a number.")
 
 
 def _split(count: int, share: float, names: tuple[str, str]) -> dict[str, int]:
@@ -208,7 +225,7 @@ def _plan(
     if size < len(known):
         raise InputError(
             f"dataset.size and dataset.twisting_share leave room for {size} {category} designs,"
-            f" which must be at least the {len(known)} that are given."
+            f" which must be at least the {len(known)} known ones."
         )
     drawn = size - len(known)
     augmented = min(math.floor(augmented_share * size + 0.5), drawn) if known else 0

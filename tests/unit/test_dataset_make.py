@@ -141,10 +141,10 @@ def test_shares(given: Mapping[str, Any], counts: dict[str, int]) -> None:
 
 
 def test_without_known_designs_all_are_random_and_the_report_says_so() -> None:
-    dataset = make_dataset(100)
+    dataset = make_dataset(100, published=())
     assert dataset.report["counts"] == {"bending": {"random": 50}, "twisting": {"random": 50}}
     assert len(dataset.report["notes"]) == 2
-    assert make_dataset(100, augmented_share=0).report["notes"] == []
+    assert make_dataset(100, published=(), augmented_share=0).report["notes"] == []
     partly = make_dataset(100, published=[BENDING])
     assert partly.report["notes"] == [
         "No known design is a twisting one, so that all twisting designs are sampled at random."
@@ -191,6 +191,10 @@ def test_the_rules_are_those_given() -> None:
     ("given", "words"),
     [
         ({"size": 0}, r"dataset\.size = 0 must be a whole number of at least 1"),
+        ({"size": "x"}, r"dataset\.size = 'x' must be a number\.$"),
+        ({"seed": None}, r"dataset\.seed = None must be a number\.$"),
+        ({"jitter": "0.1"}, r"dataset\.jitter = '0\.1' must be a number\.$"),
+        ({"twisting_share": True}, r"dataset\.twisting_share = True must be a number\.$"),
         ({"size": 10.5}, r"dataset\.size = 10\.5 must be a whole number"),
         ({"seed": -1}, r"dataset\.seed = -1 must be a whole number of at least 0"),
         ({"jitter": 0.0}, r"dataset\.jitter = 0\.0 must be a finite number greater than 0"),
@@ -208,6 +212,23 @@ def test_what_cannot_be_is_refused(given: dict[str, Any], words: str) -> None:
         make_dataset(**arguments)
 
 
+def test_known_designs_come_with_pagd(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever is in the current folder."""
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "table2.csv").write_text("name\n")
+    monkeypatch.chdir(tmp_path)
+    dataset = make_dataset(100)
+    assert dataset.designs.equals(make_dataset(100, published=KNOWN).designs)
+    assert set(dataset.designs["origin"]) >= {"table2", "published", "jitter", "interpolation"}
+
+
+@pytest.mark.parametrize(("share", "absent"), [(0.0, "twisting"), (1.0, "bending")])
+def test_no_note_on_a_category_that_is_not_wanted(share: float, absent: str) -> None:
+    dataset = make_dataset(50, twisting_share=share)
+    assert absent not in set(dataset.designs["mode"])
+    assert dataset.report["notes"] == []
+
+
 def test_whole_numbers_may_come_as_floats() -> None:
     size: Any = 1e2
     report = make_dataset(size, seed=2).report
@@ -215,7 +236,7 @@ def test_whole_numbers_may_come_as_floats() -> None:
 
 
 def test_a_generated_table_serves_as_known_designs(tmp_path: Path) -> None:
-    write_frame(tmp_path / "d.parquet", make_dataset(20, seed=3).designs)
+    write_frame(tmp_path / "d.parquet", make_dataset(20, published=(), seed=3).designs)
     known: list[NamedDesign] = list(read_designs({"own": str(tmp_path / "d.parquet")}).values())
     frame = make_dataset(100, published=known).designs
     assert designs_of(frame.head(20)) == [named.design for named in known]
