@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pagd.figures.load import States, load_states
 from pagd.figures.scene import Box, Camera, Image, Sheet, Wire, render
-from pagd.figures.style import FAINT, INK, STRAIN_LABEL, STRAIN_MAP, new_figure, save
+from pagd.figures.style import FAINT, INK, STRAIN_LABEL, STRAIN_MAP, kilopascals, new_figure, save
 from pagd.figures.surface import Skin, sharp_edges, skin_of
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def deformed_figure(title: str, shapes: Shapes) -> Figure:
     for axes, state in zip(panels.flat, chosen, strict=False):
         axes.imshow(ghost)
         axes.imshow(shapes.picture(int(state), VIEW, box, scale, top))
-        axes.set_title(f"{shapes.pressure_kPa[state]:g} kPa")
+        axes.set_title(kilopascals(shapes.pressure_kPa[state]))
     figure.suptitle(f"{title}: deformed shapes at rising pressure", fontweight="bold")
     add_strain_bar(figure, list(panels.flat), top)
     draw_triad(figure, VIEW)

@@ -17,7 +17,7 @@ from pagd.errors import InputError
 from pagd.figures.deformed import VIEW
 from pagd.figures.groups import read_entries
 from pagd.figures.load import States, has_states, load_states
-from pagd.figures.style import FAINT, STRAIN_MAP
+from pagd.figures.style import FAINT, STRAIN_MAP, kilopascals
 from pagd.figures.surface import skin_of
 from pagd.files import write_text
 
@@ -43,7 +43,9 @@ def draw_side_by_side(design_folders: Sequence[Path], out: Path) -> None:
     solved = {entry.name: load_states(entry.folder) for entry in examples}
     top = max(float(np.percentile(states.strain[-1], 99.0)) for states in solved.values())
     panels = [_triangles(states, top) for states in solved.values()]
-    captions = [f"{name}, {states.pressure_kPa[-1]:g} kPa" for name, states in solved.items()]
+    captions = [
+        f"{name}, {kilopascals(states.pressure_kPa[-1])}" for name, states in solved.items()
+    ]
     write_text(out, _svg(panels, captions))
 
 

@@ -18,6 +18,7 @@ from pagd.figures.style import (
     INK,
     STRAIN_LABEL,
     STRAIN_MAP,
+    kilopascals,
     mode_look,
     new_figure,
     number,
@@ -112,7 +113,7 @@ def caption(folder: Path) -> str:
 def _tile(entry: Entry) -> Tile:
     shapes = Shapes.of(load_states(entry.folder))
     turned = caption(entry.folder)
-    reached = ": ".join(filter(None, (f"{shapes.pressure_kPa[-1]:g} kPa", turned)))
+    reached = ": ".join(filter(None, (kilopascals(shapes.pressure_kPa[-1]), turned)))
     name = entry.name if len(entry.name) <= _LONGEST else f"{entry.name[: _LONGEST - 1]}…"
     return Tile(shapes, name, reached, "" if entry.is_ok else entry.status)
 

@@ -31,6 +31,7 @@ __all__ = [
     "STRAIN_MAP",
     "Look",
     "design_colours",
+    "kilopascals",
     "mode_look",
     "new_figure",
     "number",
@@ -163,6 +164,15 @@ def origin_colour(origin: str) -> str:
 def origin_name(origin: str) -> str:
     """Return an origin as people read it."""
     return {"table2": "Table 2"}.get(origin, origin)
+
+
+def kilopascals(pressure_kPa: float) -> str:
+    """Return a pressure with its unit, to four significant digits.
+
+    >>> kilopascals(45.9116)
+    '45.91 kPa'
+    """
+    return f"{float(f'{pressure_kPa:.4g}'):g} kPa"
 
 
 def number(value: float, digits: int) -> str:

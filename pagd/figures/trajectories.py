@@ -13,7 +13,15 @@ from pagd.errors import InputError
 from pagd.figures.groups import FEW, by_mode, read_entries
 from pagd.figures.load import Path3D, has_trajectory, load_trajectory
 from pagd.figures.paths_by_mode import members_of, trajectories_by_mode
-from pagd.figures.style import FAINT, INK, PRESSURE_MAP, design_colours, new_figure, save
+from pagd.figures.style import (
+    FAINT,
+    INK,
+    PRESSURE_MAP,
+    design_colours,
+    kilopascals,
+    new_figure,
+    save,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -106,7 +114,7 @@ def _draw_tips(
         _widen(axes)
     side.set_title("tips from the side, inner colour: pressure")
     front.set_title("tips from the front")
-    legend = [f"{name}, to {path.pressure_kPa[-1]:g} kPa" for name, path in paths.items()]
+    legend = [f"{name}, to {kilopascals(path.pressure_kPa[-1])}" for name, path in paths.items()]
     figure.legend(side.lines, legend, loc="outside lower left", ncols=min(len(legend), _IN_A_ROW))
     space.set_title("tips (thick) and centre lines at the highest pressure")
     _equal_box(space, paths)

@@ -48,7 +48,7 @@ from pagd.figures.paths_by_mode import (
     trajectories_by_mode,
 )
 from pagd.figures.scene import Camera, Sheet, render
-from pagd.figures.style import number
+from pagd.figures.style import kilopascals, number
 from pagd.figures.surface import cut_faces, sharp_edges, skin_of, split_faces
 from pagd.figures.trajectories import draw_trajectories, load_all, trajectories_figure
 from pagd.tables import TRAJECTORY, write_table
@@ -302,6 +302,14 @@ def test_no_text_lies_in_the_panels_of_the_tips():
 )  # fmt: skip
 def test_zero_has_no_sign(value, digits, expected):
     assert number(value, digits) == expected
+
+
+@pytest.mark.parametrize(
+    ("pressure", "expected"),
+    [(45.9116, "45.91 kPa"), (100.0, "100 kPa"), (12345.6, "12350 kPa"), (0.0, "0 kPa")],
+)
+def test_a_pressure_has_four_digits(pressure, expected):
+    assert kilopascals(pressure) == expected
 
 
 def test_a_twist_of_nearly_nothing_is_written_as_zero(tmp_path):

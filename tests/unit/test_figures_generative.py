@@ -37,7 +37,7 @@ from pagd.figures.generative.projection import (
     principal_axes,
 )
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw
-from pagd.figures.style import MODE_LOOKS, STATUS_COLOURS, mode_look, new_figure
+from pagd.figures.style import MODE_LOOKS, STATUS_COLOURS, mode_look, new_figure, set_resolution
 from pagd.record import Record, versions, write_record
 from pagd.tables import DESIGNS, GENERATED, PERFORMANCE, Column, write_rows, write_table
 
@@ -150,7 +150,7 @@ def leave_record(folder, **sections):
         design_id="all",
         status=Status.ok,
         reason=None,
-        figures={"trustworthiness": 0.91},
+        figures={"trustworthiness": 0.91, "redrawn_by_generator": 1537},
         configuration=sections,
         versions=versions(1),
         timings_s={"wall": 1.0, "cpu": 1.0},
@@ -194,6 +194,13 @@ def real(name):
 def leave_table(path, frame):
     kinds = [real(n) if frame[n].dtype.kind == "f" else Column(n, "string", "", "") for n in frame]
     write_table(path, kinds, {name: frame[name] for name in frame})
+
+
+@pytest.fixture(scope="module", autouse=True)
+def usual_resolution():
+    """The resolution holds for all pictures made later: those of other tests must not be small."""
+    yield
+    set_resolution(150)
 
 
 @pytest.fixture(scope="module")
@@ -328,9 +335,39 @@ def test_mixture_shows_modes_ellipses_and_the_choice_of_their_number():
     assert len(ellipses) == 6
     assert sum(ellipse.get_linestyle() != "-" for ellipse in ellipses) == 2
     assert words_in(plane) == ["Gaussian, 30%", "Gaussian, 30%", "bridging Gaussian, 30%"]
-    assert legend_of(curve) == ["least: K = 2", "used: K = 3"]
+    assert legend_of(curve) == ["least: K = 2", "used: K = 2 + bridge"]
+    assert curve.lines[-1].get_xydata().tolist() == [[2.0, 0.7]]
     assert sum(bar.get_height() for bar in shares.patches) == 20
     assert "33 %" in heading(shares)
+
+
+@pytest.mark.parametrize(
+    ("count", "components", "expected"),
+    [
+        (2, 3, ["least: K = 2", "used: K = 3"]),
+        (3, 1, ["least: K = 2"]),
+        (0, None, ["least: K = 2"]),
+    ],
+)
+def test_used_number_of_gaussians_is_that_of_em(count, components, expected):
+    bic = {1: 900.0, 2: 700.0, 3: 710.0}
+    found = mixture_figure(
+        training_designs(), generated_designs(), gaussians(count), bic, components
+    )
+    assert legend_of(found.axes[1]) == expected
+
+
+def test_bins_of_alpha_treat_both_modes_alike_and_cut_no_fraction():
+    generated = generated_designs(["mixed"] * 9)
+    shares = mixture_figure(training_designs(), generated).axes[2]
+    edges = np.array([bar.get_x() for bar in shares.patches])
+    width = shares.patches[0].get_width()
+    fractions = np.array([part / whole for whole in range(4, 17) for part in range(1, whole)])
+    np.testing.assert_allclose(edges + edges[::-1] + width, 1.0)
+    assert len(edges) == 9
+    assert np.abs(fractions[:, None] - [*edges, edges[-1] + width]).min() > 0.002
+    assert edges[0] < fractions.min()
+    assert fractions.max() < edges[-1] + width
 
 
 def test_mixture_without_gaussians_and_without_mixed_designs():
@@ -600,9 +637,27 @@ def test_captions_carry_the_numbers_of_the_run(results):
     assert "all 120" in found["embedding"]
     assert "20 mixed designs out of 60" in found["mixture"]
     assert "30 % of the weight" in found["mixture"]
+    assert "1,537 draws were made again." in found["mixture"]
+    assert "those of Table 2 as stars" in found["embedding"]
     assert "it is least with 2." in found["mixture"]
     assert "8 designs were simulated, 6 ended well." in found["feasibility"]
     assert not any("{" in text for text in found.values())
+
+
+def test_without_a_bridge_no_caption_speaks_of_one(tmp_path):
+    leave_results(tmp_path)
+    (tmp_path / "generated" / "mixture.json").write_text(json.dumps(MIXTURE | {"bridge": None}))
+    found = texts.captions(facts_of(GenerativePaths.under(tmp_path)))["mixture"]
+    assert "Ellipses: 3 Gaussians" in found
+    assert not any(word in found for word in ("dashed", "barycentre", "again"))
+
+
+def test_the_report_says_of_the_bridge_what_the_page_says():
+    """A caption of the report knows the configuration only, so that it has a text of its own."""
+    report = Path(__file__).parents[2] / "workflow" / "report" / "generative.rst"
+    said = " ".join(report.read_text(encoding="utf-8").split())
+    (bridge,) = [text for text in texts.CAPTIONS["mixture"] if "barycentre" in text]
+    assert bridge.replace(", with {bridge_weight} of the weight,", "") in said
 
 
 # All together ---------------------------------------------------------------------------------
@@ -665,7 +720,9 @@ def test_picture_for_the_documentation_is_small_and_always_the_same(results, tmp
     assert len(content) < 150_000
     drawn = "".join(ElementTree.fromstring(content).itertext())
     assert "bridging Gaussian" in drawn
-    assert "mixed (20)" in drawn
+    assert "mixed" in drawn
+    assert "mixed (20)" not in drawn
+    assert "drawn: 120 of 120 training designs, 60 of 60 generated" in drawn
     assert b"<dc:date>" not in content
 
 

@@ -16,8 +16,9 @@ from PIL import Image
 
 from pagd.errors import InputError
 from pagd.figures import viewer
+from pagd.figures.alternatives import ALTERNATIVES, alternative
 from pagd.figures.angles import draw_angles
-from pagd.figures.captions import TOGETHER
+from pagd.figures.captions import OF_DESIGN, TOGETHER
 from pagd.figures.generative.captions import CAPTIONS
 from pagd.figures.groups import read_entries
 from pagd.figures.load import Path3D
@@ -181,6 +182,12 @@ def test_table_shows_what_is_known_and_sorts_by_numbers():
     assert "href" not in second
 
 
+@pytest.mark.parametrize(("count", "box"), [(20, "scroll"), (21, "scroll tall")])
+def test_only_long_tables_scroll_in_a_box(count, box):
+    row = {"design_id": "a", "link": False, "status": "ok", "bending_deg": 1.0}
+    assert f'<div class="{box}"><table' in results_table([row] * count)
+
+
 def test_rows_are_those_of_the_summary_with_what_the_records_add(tmp_path):
     folder = solved(tmp_path / "drawn", size_mm=3.0, origin="published")
     entries = read_entries([folder])
@@ -229,9 +236,11 @@ def test_comparison_has_a_table_a_space_and_the_own_generator_first():
         ["generator", "novelty"],
         ["gmm", "–"],
         ["random", "12,345 [−0.00123, 2.50]"],
-        ["training", "0.250"],
+        ["training designs", "0.250"],
     ]
     assert "−3.50" in plane
+    assert "<th>DPP score</th>" in plane
+    assert re.findall("<h3>(.*?)</h3>", text) == ["Plane", "All parameters"]
     assert "mean distance; higher is better; in brackets: 95 %" in text
 
 
@@ -267,7 +276,8 @@ def study(tmp_path_factory):
     setting = {"method": "tsne", "perplexity": 30.0, "seed": 8}
     embedding = stage_record(root / "embedding", {"trustworthiness": 0.9}, embedding=setting)
     shares = {"bending": 0.25, "twisting": 0.25, "mixed": 0.5}
-    drawn = {"designs": 1000, "mode_share": shares, "novelty_mean": 1.25}
+    refused = {"invalid": 2, "copies_of_training": 1, "duplicates": 3, "other_mode": 0}
+    drawn = {"designs": 1000, "mode_share": shares, "novelty_mean": 1.25, "refused": refused}
     generated = stage_record(root / "generated", drawn, generator={"method": "gmm", "seed": 9})
     pictures_in(root / "simulated", SHOWN_ELSEWHERE)
     pictures_in(root / "pictures", [name for name in CAPTIONS if name not in SHOWN_ELSEWHERE])
@@ -317,8 +327,9 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "<dd>bending 50 %</dd>",
         "<dd>t-SNE, perplexity 30</dd>",
         "<dd>bending 25 %, twisting 25 %, mixed 50 %</dd>",
-        "<dt>mean novelty, encoded space</dt><dd>1.250</dd>",
+        "<dt>mean novelty, all parameters</dt><dd>1.250</dd>",
         "<dt>simulated designs</dt><dd>7</dd>",
+        "<dd>2 invalid, 1 copy of a training design, 3 duplicates</dd>",
     ):
         assert fact in text
     assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"
@@ -331,6 +342,14 @@ def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
     assert text.count("data:image/webp") == len(CAPTIONS)
     assert shown[0] == "embedding"
     assert text.index("How hull") < text.index("<h2>5. Performance") < text.index("How feasibility")
+
+
+def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
+    told = re.findall(r'<img[^>]* alt="([^"]*)"', whole_page.read_text(encoding="utf-8"))
+    assert sorted(told) == sorted(html.escape(alternative(name)) for name in CAPTIONS)
+    assert alternative("mesh", "bending") == f"{ALTERNATIVES['mesh']}: bending."
+    assert set(ALTERNATIVES) == {*CAPTIONS, *OF_DESIGN, "gallery", "trajectories", "angles"}
+    assert all(len(text.split()) > 5 for text in ALTERNATIVES.values())
 
 
 def test_many_cards_are_closed_and_designs_without_a_folder_have_none(whole_page):

@@ -89,7 +89,7 @@ class Paths {
       ["bending", "Bending of the tip"],
       ["twist", "Twist of the tip"],
     ]) {
-      const angle = { hovertemplate: "%{x} kPa: %{y:.1f}°" };
+      const angle = { hovertemplate: "%{x:.4~r} kPa: %{y:.1f}°" };
       const line = (d) => this.thin(curve(d, d.path.pressure_kPa, d.path[id + "_deg"], angle));
       this.redraw.push(
         register(
@@ -116,7 +116,7 @@ class Paths {
       line: { color: design.colour, width: this.grouped ? 3 : 6 },
       opacity: 0.25,
     };
-    const text = design.path.pressure_kPa.map((p) => p + " kPa");
+    const text = design.path.pressure_kPa.map(kilopascals);
     const place = { text, hovertemplate: "%{text}<br>%{x} mm, %{y} mm" };
     return [shape, this.thin(curve(design, tip(across), tip(2), place))];
   }

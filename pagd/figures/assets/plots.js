@@ -17,6 +17,11 @@ function modeColour(mode) {
   return content.modes[mode] || colour("faint");
 }
 
+// A pressure with its unit, to four significant digits.
+function kilopascals(pressure) {
+  return Number(pressure.toPrecision(4)) + " kPa";
+}
+
 const plain = { showlegend: false };
 
 // ---- flat plots -----------------------------------------------------------------------------

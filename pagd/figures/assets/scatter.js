@@ -9,8 +9,9 @@ function symbol(point) {
 }
 
 function cloud(mode, points, x, y) {
+  const reached = (p) => (p.pressure_kPa === null ? "" : `, ${kilopascals(p.pressure_kPa)}`);
   const about = (p) =>
-    `${p.design_id} (${p.origin})<br>${p.status.replaceAll("_", " ")}, ${p.pressure_kPa} kPa`;
+    `${p.design_id} (${p.origin})<br>${p.status.replaceAll("_", " ")}${reached(p)}`;
   return {
     type: "scatter",
     mode: "markers",

@@ -221,7 +221,7 @@ class Viewer {
   }
 
   label() {
-    this.output.textContent = this.data.pressure_kPa[this.state] + " kPa";
+    this.output.textContent = kilopascals(this.data.pressure_kPa[this.state]);
   }
 
   update() {
@@ -272,7 +272,7 @@ class Viewer {
     const path = this.design.path;
     const line = (name, values, dash) => ({
       ...curve(this.design, path.pressure_kPa, values, {
-        name, hovertemplate: name + " %{y:.1f}° at %{x} kPa<extra></extra>",
+        name, hovertemplate: name + " %{y:.1f}° at %{x:.4~r} kPa<extra></extra>",
       }),
       line: { color: this.design.colour, width: 2, dash },
     });

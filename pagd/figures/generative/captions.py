@@ -21,7 +21,7 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "Perplexity {perplexity}; neighbours matter in such a plane, distances between islands"
         " do not.",
         "Left: a seeded choice of up to 1,000, by category; right: all {trained}, by where they"
-        " come from, with published actuators as stars.",
+        " come from, with published actuators and those of Table 2 as stars.",
         "Trustworthiness {trustworthiness} (1: all neighbours are kept).",
         "Seed {embedding_seed}.",
     ),
@@ -29,9 +29,12 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "Generated designs in the reduced space, by the mode of the decoded design (Fig. 4b of"
         " the paper), over the training designs in grey.",
         "Ellipses: {gaussians} Gaussians at one and two standard deviations.",
-        "The dashed one, with {bridge_weight} of the weight, is not fitted by EM but is the"
-        " Wasserstein barycentre of the two categories: EM alone finds only what the data set"
-        " has, and so no mixed design. It is counted in the K that is used.",
+        "EM models where the data are, so that between the islands there are only its tails. The"
+        " dashed Gaussian, with {bridge_weight} of the weight, is not fitted but put between the"
+        " two categories (their Wasserstein barycentre); its share of the designs is a setting"
+        " (generator.bridge_share). What it draws on an island is drawn again, so that its designs"
+        " lie only where both kinds are blended; the ellipse shows the Gaussian before that.",
+        "{redrawn} draws were made again.",
         "Upper right: the Bayesian information criterion of EM by number of Gaussians; it is least"
         " with {least_bic}.",
         "Lower right: the share α of helical chambers of the {mixed} mixed designs out of"

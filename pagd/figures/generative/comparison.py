@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from pagd.diversity.comparison import TRAINING
+from pagd.figures.generative.names import SPACES, metric_name, space_name
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw, table_or_none
 from pagd.figures.style import FAINT, INK, new_figure, save
 
@@ -24,13 +25,6 @@ __all__ = ["comparison_figure", "draw_comparison"]
 _COLUMNS: Final = 4
 _ARROWS: Final = {"higher": "  more is better →", "lower": "  ← less is better"}
 _OWN: Final = "#e69f00"
-_SPACES: Final = {"encoded": "all parameters", "plane": "plane", "plane_sample": "small plane"}
-_NAMES: Final = {
-    "dpp": "DPP score",
-    "mmd": "MMD², from training",
-    "mode_part": "share of novelty by mode",
-    "hull_ratio": "hull / training hull",
-}
 # Of the plane only what the paper measures there, and what is told by few numbers.
 _SHOWN: Final = {
     "plane": ("novelty", "hull_ratio", "coverage", "density"),
@@ -106,7 +100,7 @@ def _shown(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _order(spaces: pd.Series[str]) -> pd.Series[int]:
-    return spaces.map({space: i for i, space in enumerate(reversed(_SPACES))}).fillna(len(_SPACES))
+    return spaces.map({space: i for i, space in enumerate(reversed(SPACES))}).fillna(len(SPACES))
 
 
 def _draw_measure(axes: Axes, part: pd.DataFrame, generators: Sequence[str]) -> None:
@@ -136,9 +130,9 @@ def _explain(figure: Figure, own: str, with_training: bool) -> None:
 
 def _head(axes: Axes, metric: str, space: str, better: str) -> None:
     """Write what is measured above the panel, and below that where, and which way is better."""
-    axes.set_title(f"{_NAMES.get(metric, metric.replace('_', ' '))}\n", fontsize=9)
+    axes.set_title(f"{metric_name(metric)}\n", fontsize=9)
     axes.annotate(
-        f"{_SPACES.get(space, space)}{_ARROWS.get(better, '')}",
+        f"{space_name(space)}{_ARROWS.get(better, '')}",
         (0.0, 1.0),
         xytext=(0, 4),
         xycoords="axes fraction",

@@ -46,9 +46,12 @@ def _counts(paths: GenerativePaths) -> dict[str, Any]:
 def _mixture(paths: GenerativePaths) -> dict[str, Any]:
     content = load_mixture(paths)
     weights, bridge, bic = (content.get(name) for name in ("weights", "bridge", "bic"))
+    bridged = weights[bridge] if weights and bridge is not None else None
+    redrawn = figures_of(paths.generated).get("redrawn_by_generator")
     return {
         "gaussians": len(weights) if weights else None,
-        "bridge_weight": _percent(weights[bridge]) if weights and bridge is not None else None,
+        "bridge_weight": None if bridged is None else _percent(bridged),
+        "redrawn": None if bridged is None else redrawn,
         "least_bic": min(bic, key=bic.get) if bic else None,
     }
 

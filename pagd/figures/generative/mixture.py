@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from pagd.figures.generative.labels import legend_below
 from pagd.figures.generative.plane import (
@@ -69,7 +68,7 @@ def mixture_figure(
     bic
         Bayesian information criterion by number of Gaussians; lower is better.
     components
-        Number of Gaussians that was used.
+        Number of Gaussians that was used, a bridging one among them.
     method
         Method of the embedding, which names the coordinates.
     """
@@ -80,21 +79,35 @@ def mixture_figure(
     frame_axes(plane, method)
     legend_below(plane, 4)
     name_gaussians(plane, gaussians)
-    _draw_bic(curve, bic or {}, components)
+    _draw_bic(curve, bic or {}, components, bridged=any(g.bridges for g in gaussians))
     _draw_alpha(shares, generated)
     return figure
 
 
 _MOST_NAMES = 4
+_USED = "#e69f00"
 _CELLS = ((slice(None), 0), (0, 1), (1, 1))
+# α is a fraction n/N. With bins of this width, one of them around 1/2, no fraction with N up to 16
+# lies on an edge, each bin holds about as many fractions, and α and 1 − α are treated alike.
+_BINS, _BIN = 9, 0.106
+_ALPHA_EDGES = 0.5 + _BIN * (np.arange(_BINS + 1) - _BINS / 2)
 
 
 def draw_plane(
-    axes: Axes, training: pd.DataFrame, generated: pd.DataFrame, gaussians: Sequence[Gaussian]
+    axes: Axes,
+    training: pd.DataFrame,
+    generated: pd.DataFrame,
+    gaussians: Sequence[Gaussian],
+    *,
+    counted: bool = True,
 ) -> None:
-    """Draw training designs faintly, generated ones by mode, and the Gaussians' ellipses."""
-    draw_background(axes, training[["z1", "z2"]].to_numpy(), f"training ({len(training):,})")
-    scatter_modes(axes, generated, "z1", "z2", size=13, alpha=0.85)
+    """Draw training designs faintly, generated ones by mode, and the Gaussians' ellipses.
+
+    The legend says how many of each there are, if they are to be counted.
+    """
+    label = f"training ({len(training):,})" if counted else "training"
+    draw_background(axes, training[["z1", "z2"]].to_numpy(), label)
+    scatter_modes(axes, generated, "z1", "z2", size=13, alpha=0.85, counted=counted)
     for gaussian in gaussians:
         draw_gaussian(axes, gaussian, (1.0, 2.0))
     axes.autoscale_view()
@@ -126,7 +139,10 @@ def _write_at_ellipse(axes: Axes, gaussian: Gaussian, text: str, side: int) -> N
     )
 
 
-def _draw_bic(axes: Axes, bic: Mapping[int, float], components: int | None) -> None:
+def _draw_bic(
+    axes: Axes, bic: Mapping[int, float], components: int | None, *, bridged: bool
+) -> None:
+    """Draw the criterion of EM; a bridging Gaussian is not fitted, and so not on the curve."""
     axes.set_title("how many Gaussians: BIC, lower is better")
     if not bic:
         _say(axes, "this generator has no Gaussians to count")
@@ -136,22 +152,17 @@ def _draw_bic(axes: Axes, bic: Mapping[int, float], components: int | None) -> N
     axes.plot(counts, values, "o-", color=FAINT, markersize=4, linewidth=1.2)
     axes.set(xlabel="Gaussians K", ylabel="BIC, thousands")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    _mark(axes, counts, values, int(counts[values.argmin()]), "v", "least")
-    if components is not None and components in bic:
-        _mark(axes, counts, values, components, "o", "used")
+    least = int(counts[values.argmin()])
+    _mark(axes, (least, values.min()), "v", INK, f"least: K = {least}")
+    fitted = None if components is None else components - bridged
+    if fitted is not None and fitted in bic:
+        value = values[counts == fitted][0]
+        label = f"used: K = {fitted}{' + bridge' if bridged else ''}"
+        _mark(axes, (fitted, value), "o", _USED, label)
 
 
-def _mark(
-    axes: Axes,
-    counts: NDArray[np.int64],
-    values: NDArray[np.float64],
-    count: int,
-    marker: str,
-    word: str,
-) -> None:
-    value = float(values[counts == count][0])
-    colour = "#e69f00" if word == "used" else INK
-    axes.plot([count], [value], marker, color=colour, markersize=8, label=f"{word}: K = {count}")
+def _mark(axes: Axes, at: tuple[int, float], marker: str, colour: str, label: str) -> None:
+    axes.plot(*at, marker, color=colour, markersize=8, linestyle="", label=label)
     axes.legend(loc="best")
 
 
@@ -161,7 +172,9 @@ def _draw_alpha(axes: Axes, generated: pd.DataFrame) -> None:
     if len(mixed) == 0:
         _say(axes, f"no mixed design among {len(generated):,}")
         return
-    axes.hist(mixed, bins=20, range=(0.0, 1.0), color=MODE_LOOKS["mixed"].colour)
+    axes.hist(
+        mixed, bins=_ALPHA_EDGES.tolist(), color=MODE_LOOKS["mixed"].colour, edgecolor="white"
+    )
     axes.set(xlabel="share of helical chambers α", ylabel="designs", xlim=(0.0, 1.0))
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
 

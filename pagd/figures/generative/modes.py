@@ -52,8 +52,13 @@ def modes_figure(
     """Return the picture: some training designs, some generated ones by mode, the ellipses."""
     figure = new_figure(6.4, 5.0)
     axes = figure.add_subplot()
-    draw_plane(axes, _every(training), _every(generated), gaussians)
-    axes.set_title("two modes in the data set, three among the generated designs")
+    some, others = _every(training), _every(generated)
+    draw_plane(axes, some, others, gaussians, counted=False)
+    axes.set_title(
+        "two modes in the data set, three among the generated designs\n"
+        f"(drawn: {len(some):,} of {len(training):,} training designs,"
+        f" {len(others):,} of {len(generated):,} generated)"
+    )
     frame_axes(axes, method)
     legend_below(axes, 4)
     name_gaussians(axes, gaussians)

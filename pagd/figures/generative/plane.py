@@ -69,9 +69,16 @@ def modes_of(frame: pd.DataFrame) -> list[str]:
 
 
 def scatter_modes(
-    axes: Axes, frame: pd.DataFrame, x: str, y: str, *, size: float, alpha: float = 1.0
+    axes: Axes,
+    frame: pd.DataFrame,
+    x: str,
+    y: str,
+    *,
+    size: float,
+    alpha: float = 1.0,
+    counted: bool = True,
 ) -> None:
-    """Draw the rows as points in the colour and shape of their mode; the legend counts them."""
+    """Draw the rows as points in the colour and shape of their mode; the legend may count them."""
     for mode in modes_of(frame):
         rows = frame[frame["mode"] == mode]
         look = mode_look(mode)
@@ -83,7 +90,7 @@ def scatter_modes(
             marker=look.marker,
             alpha=alpha,
             linewidths=0,
-            label=f"{mode} ({len(rows):,})",
+            label=f"{mode} ({len(rows):,})" if counted else mode,
         )
 
 

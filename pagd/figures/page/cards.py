@@ -33,9 +33,8 @@ _VIEWER = """
 
 def card(entry: Entry, *, is_open: bool) -> str:
     """Return the card of a design as markup; the data of its shape are read when it is seen."""
-    shown = pictures(
-        entry.folder / "figures", OF_DESIGN, OF_DESIGN, PIXELS if is_open else CARD_PIXELS
-    )
+    pixels = PIXELS if is_open else CARD_PIXELS
+    shown = pictures(entry.folder / "figures", OF_DESIGN, OF_DESIGN, pixels, entry.name)
     body = [_reason(entry), _viewer(entry), folded("Pictures", shown) if is_open else shown]
     state = " open" if is_open else ""
     return (

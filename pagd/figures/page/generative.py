@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
+from pagd.diversity.comparison import TRAINING
+from pagd.figures.generative.names import metric_name, space_name
 from pagd.figures.page.markup import Section, data_table, escaped, facts
 from pagd.figures.page.pictures import pictures
 from pagd.figures.page.study import Study, captions_of, comparison_of, record_in
@@ -19,6 +21,13 @@ SHOWN_ELSEWHERE: Final = ("feasibility", "bending_twist", "novelty_performance")
 _NOTHING: Final = 1e-9
 _OF_EMBEDDING: Final = ("embedding",)
 _OF_GENERATOR: Final = ("mixture", "modes")
+# What is counted: one of it, and more.
+_WORDS: Final = {
+    "table2": ("of Table 2", "of Table 2"),
+    "copies_of_training": ("copy of a training design", "copies of training designs"),
+    "duplicates": ("duplicate", "duplicates"),
+    "other_mode": ("of another mode", "of other modes"),
+}
 
 
 def generative_sections(study: Study) -> list[Section]:
@@ -72,23 +81,29 @@ def _of_space(space: str, rows: Iterable[Mapping[str, Any]], content: Mapping[st
     # The configured generator first, the yardstick last.
     generators = sorted(
         dict.fromkeys(generator for generator, _ in found),
-        key=lambda name: (name != own, name == "training"),
+        key=lambda name: (name != own, name == TRAINING),
     )
     metrics = dict.fromkeys(metric for _, metric in found)
-    head = ["generator", *(str(metric).replace("_", " ") for metric in metrics)]
+    head = ["generator", *(metric_name(str(metric)) for metric in metrics)]
     body = [
-        [str(generator).replace("_", " "), *(_value(found.get((generator, m))) for m in metrics)]
+        [_generator(generator), *(_value(found.get((generator, m))) for m in metrics)]
         for generator in generators
     ]
     meaning = content.get("spaces", {}).get(space, "")
-    title = f"<h3>In the space: {escaped(space.replace('_', ' '))}</h3>"
+    name = space_name(space)
+    title = f"<h3>{escaped(name[:1].upper() + name[1:])}</h3>"
     note = f'<p class="note">{escaped(meaning)}.</p>' if meaning else ""
     return title + note + data_table(head, body) + _meanings(metrics, content)
 
 
+def _generator(name: str) -> str:
+    """Return a generator by its name in the configuration, the yardstick by what it is."""
+    return "training designs" if name == TRAINING else name
+
+
 def _meanings(metrics: Iterable[str], content: Mapping[str, Any]) -> str:
     known = content.get("metrics", {})
-    rows = [(m.replace("_", " "), _meaning(known[m])) for m in metrics if m in known]
+    rows = [(metric_name(m), _meaning(known[m])) for m in metrics if m in known]
     return (
         f"<details><summary>How they are computed</summary>{facts(rows)}</details>" if rows else ""
     )
@@ -171,7 +186,7 @@ def _of_generator(study: Study) -> list[tuple[str, str]]:
     shares = {mode: _percent(share) for mode, share in found.get("mode_share", {}).items()}
     chosen = record_in(study.selection)
     return [
-        ("generator", escaped(str(setting.get("method", "")).replace("_", " "))),
+        ("generator", escaped(str(setting.get("method", "")))),
         ("generated designs", _whole(found.get("designs"))),
         ("share of each mode", escaped(", ".join(f"{m} {s}" for m, s in shares.items()))),
         ("proposed", _whole(found.get("proposed"))),
@@ -186,18 +201,20 @@ def _of_novelty(study: Study) -> list[tuple[str, str]]:
     record = record_in(study.generated)
     found = record.figures if record else {}
     return [
-        ("mean novelty, encoded space", _decimal(found.get("novelty_mean"))),
-        ("mean novelty, plane in the unit square", _decimal(found.get("novelty_plane_mean"), 4)),
+        ("mean novelty, all parameters", _decimal(found.get("novelty_mean"))),
+        ("mean novelty, plane", _decimal(found.get("novelty_plane_mean"), 4)),
     ]
 
 
 def _counted(counts: Mapping[str, int]) -> str:
-    words = (f"{n:,} {_word(name)}" for name, n in counts.items() if n)
+    words = (f"{n:,} {_word(name, n)}" for name, n in counts.items() if n)
     return escaped(", ".join(words) or ("none" if counts else ""))
 
 
-def _word(name: str) -> str:
-    return {"table2": "of Table 2"}.get(name, name.replace("_", " "))
+def _word(name: str, count: int) -> str:
+    """Return what is counted, in the singular for one."""
+    one, many = _WORDS.get(name, (name.replace("_", " "),) * 2)
+    return one if count == 1 else many
 
 
 def _whole(value: int | None) -> str:

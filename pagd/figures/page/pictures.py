@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Final
 
+from pagd.figures.alternatives import alternative
 from pagd.figures.page.markup import escaped
 
 __all__ = ["CARD_PIXELS", "PIXELS", "picture", "pictures"]
@@ -22,24 +23,34 @@ _REM_PER_INCH, _DPI = 6.8, 150.0
 
 
 def pictures(
-    folder: Path | None, names: Iterable[str], captions: Mapping[str, str], pixels: int = PIXELS
+    folder: Path | None,
+    names: Iterable[str],
+    captions: Mapping[str, str],
+    pixels: int = PIXELS,
+    subject: str = "",
 ) -> str:
-    """Return the pictures NAME.png that the folder holds, in the order of the names."""
+    """Return the pictures NAME.png that the folder holds, in the order of the names.
+
+    Whoever does not see them is told what they show, and of which subject.
+    """
     if folder is None:
         return ""
-    found = [picture(folder / f"{name}.png", captions.get(name, ""), pixels) for name in names]
+    found = [
+        picture(folder / f"{name}.png", captions.get(name, ""), alternative(name, subject), pixels)
+        for name in names
+    ]
     return "\n".join(filter(None, found))
 
 
-def picture(path: Path, caption: str, pixels: int = PIXELS) -> str:
-    """Return a picture with its caption; nothing if there is no such file."""
+def picture(path: Path, caption: str, instead: str, pixels: int = PIXELS) -> str:
+    """Return a picture with its caption and the text instead of it; nothing without the file."""
     if not path.is_file():
         return ""
     address, (width, height), inches = _embedded(path, pixels)
     image = (
         f'<img loading="lazy" decoding="async" width="{width}" height="{height}"'
         f' style="max-width: {_REM_PER_INCH * inches:.0f}rem"'
-        f' src="{address}" alt="{escaped(path.stem.replace("_", " "))}">'
+        f' src="{address}" alt="{escaped(instead)}">'
     )
     return f"<figure>{image}<figcaption>{escaped(caption)}</figcaption></figure>"
 

@@ -45,6 +45,9 @@ _COLUMNS: Final = (
     _Column("material", "", "material", str),
 )
 
+# More rows than these scroll in a box of their own.
+_MOST: Final = 20
+
 _FILTER = """
 <div class="filter">
   <label>
@@ -61,8 +64,9 @@ def results_table(rows: Sequence[Row]) -> str:
     head = "".join(_heading(c.heading, c.unit) for c in columns)
     head = f"{_heading('design', '')}{_heading('status', '')}{head}"
     body = "\n".join(_row(row, columns) for row in rows)
+    box = "scroll tall" if len(rows) > _MOST else "scroll"
     return (
-        f'{_FILTER}<div class="scroll tall"><table class="sortable" id="results"><thead><tr>{head}'
+        f'{_FILTER}<div class="{box}"><table class="sortable" id="results"><thead><tr>{head}'
         f"</tr></thead><tbody>{body}</tbody></table></div>"
     )
 
