@@ -9,13 +9,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-__all__ = ["MODES", "choose", "farthest_points"]
+from pagd.design import MODES
+
+__all__ = ["choose", "farthest_points"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-#: The order in which modes get the designs that do not divide evenly.
-MODES = ("bending", "twisting", "mixed")
 
 
 def choose(
@@ -42,7 +41,7 @@ def choose(
     seed
         Of the first design of each mode.
     modes
-        The modes to choose from, in order of precedence.
+        The modes to choose from, in order of precedence: bending, twisting and mixed.
 
     Returns
     -------

@@ -13,6 +13,7 @@ from pagd.cli.arguments import (
     add_verbose,
     override,
 )
+from pagd.design import MODES
 
 __all__ = ["add_generative"]
 
@@ -59,7 +60,7 @@ def _add_generate(commands: Any) -> None:
     add_folder(command, "embedding", required=False)
     command.add_argument(
         "--mode",
-        choices=("bending", "twisting", "mixed"),
+        choices=MODES,
         help="take designs of this mode only (default: as they come)",
     )
     group = _overrides(command)

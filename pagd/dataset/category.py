@@ -13,7 +13,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.design import PARAMETERS, Design, Parameter
+from pagd.design import DECIMALS, PARAMETERS, Design, Parameter
 
 __all__ = [
     "CATEGORIES",
@@ -32,8 +32,6 @@ FloatArray = NDArray[np.float64]
 #: The categories of the paper's data set; its third mode, mixed, is for the generator to find.
 CATEGORIES: Final[tuple[Category, ...]] = ("bending", "twisting")
 
-# Table 2 of the paper gives hundredths of a millimetre; nothing finer can be cast anyway.
-_DECIMALS: Final = 2
 _FIXED: Final[dict[Category, dict[str, float]]] = {
     "bending": {"theta": 0.0, "alpha": 0.0},
     "twisting": {"alpha": 1.0},
@@ -66,7 +64,7 @@ def in_box(points: FloatArray, category: Category) -> FloatArray:
 def rounded(values: FloatArray, category: Category) -> FloatArray:
     """Round rows of free parameters to 0.01 mm and 0.01 degrees, and N to a whole number."""
     whole = np.array([parameter.whole for parameter in free_parameters(category)])
-    return np.where(whole, np.floor(values + 0.5), np.round(values, _DECIMALS))
+    return np.where(whole, np.floor(values + 0.5), np.round(values, DECIMALS))
 
 
 def values_of(designs: Iterable[Design], category: Category) -> FloatArray:

@@ -1,11 +1,13 @@
 """The design of a pneu-net: parameters, dependent ones, validity rules and exact volumes."""
 
-from pagd.design.model import CrossSection, Design, Mode
-from pagd.design.parameters import PARAMETERS, Parameter
+from pagd.design.model import MODES, CrossSection, Design, Mode
+from pagd.design.parameters import DECIMALS, PARAMETERS, Parameter
 from pagd.design.rules import Channel, GeometryRules, Limits, Violation, check, violations
 from pagd.design.volumes import base_volume, body_volume, cavity_volume, solid_volume
 
 __all__ = [
+    "DECIMALS",
+    "MODES",
     "PARAMETERS",
     "Channel",
     "CrossSection",

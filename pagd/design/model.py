@@ -6,16 +6,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from numbers import Real
-from typing import Any, Literal
+from typing import Any, Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pagd.errors import InputError
 
-__all__ = ["CrossSection", "Design", "Mode", "as_number"]
+__all__ = ["MODES", "CrossSection", "Design", "Mode", "as_number"]
 
 Mode = Literal["bending", "twisting", "mixed"]
+#: All modes, in the order of every list of them.
+MODES: Final[tuple[Mode, ...]] = get_args(Mode)
 CrossSection = Literal["rectangular"]
 FloatArray = NDArray[np.float64]
 

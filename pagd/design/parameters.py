@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-__all__ = ["PARAMETERS", "Parameter"]
+__all__ = ["DECIMALS", "PARAMETERS", "Parameter"]
+
+#: Designs are given to 0.01 mm and 0.01 degrees, as in Table 2; nothing finer can be cast anyway.
+DECIMALS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)

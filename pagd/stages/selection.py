@@ -12,10 +12,11 @@ import pandas as pd
 
 from pagd.config import part
 from pagd.dataset import INDEPENDENT
+from pagd.design import MODES
 from pagd.encoding import Encoder
 from pagd.files import write_text
 from pagd.record import Meter, Record
-from pagd.selection import MODES, choose
+from pagd.selection import choose
 from pagd.stages.dataset import load_dataset
 from pagd.stages.generated import load_generated
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
