@@ -88,7 +88,8 @@ METRICS: Final = MappingProxyType(
         "density": Metric(
             "density",
             "mean number of training designs whose ball, reaching to the k-th nearest other"
-            " training design, holds a design, by k",
+            " training design, holds a design, by k. Resampled designs may be among the very"
+            " training designs that they are compared with, which raises theirs",
             "Naeem et al. 2020",
             "neither",
             _NONE,
@@ -96,7 +97,8 @@ METRICS: Final = MappingProxyType(
         "coverage": Metric(
             "coverage",
             "share of training designs whose ball, reaching to the k-th nearest other training"
-            " design, holds some design",
+            " design, holds some design. Resampled designs may be among the very training designs"
+            " that they are compared with, which raises theirs",
             "Naeem et al. 2020",
             "higher",
             _NONE,

@@ -160,6 +160,16 @@ def test_what_is_not_a_number_is_null_in_the_file() -> None:
     json.dumps(found.as_dict(), allow_nan=False)
 
 
+def test_resampled_designs_are_among_those_they_are_compared_with() -> None:
+    """As the descriptions say: they look more faithful than training designs held out."""
+    settings = Settings(hull_designs=20, hull_repeats=2, sample=300, components=3)
+    found = compare({"resample": TRAINING}, TRAINING, settings, 1)
+    for metric in ("density", "coverage"):
+        value = {name: found.row(name, metric)["value"] for name in ("resample", "training")}
+        assert value["resample"] > value["training"]
+        assert "Resampled designs" in METRICS[metric].description
+
+
 def test_places_of_mode_in_encoded_designs() -> None:
     designs = make_dataset(40, seed=1).designs
     names = Encoder().fit(designs).get_feature_names_out()
