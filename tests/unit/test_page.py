@@ -424,6 +424,11 @@ input.value = "D3 generated"; input.dispatchEvent(new Event("input"));
 found.filtered = names();
 found.count = document.querySelector("[data-count]").textContent;
 document.querySelectorAll("#groups button")[1].click(); found.twisting = keys();
+const box = document.querySelector("#results").parentElement;
+found.more = [90, 0, 5000].map((scrolled) => {
+  box.style.width = "100px"; box.scrollLeft = scrolled; fade(box);
+  return box.classList.contains("more");
+});
 const list = document.createElement("pre");
 list.id = "found"; list.textContent = JSON.stringify(found); document.body.append(list);
 """
@@ -437,6 +442,8 @@ def test_table_sorts_and_filters_and_paths_are_shown_by_mode(whole_page, tmp_pat
     assert found["falling"] == "d6 d5 d4 d3 d2 d1 d0"
     assert (found["filtered"], found["count"]) == ("d3", "1 of 7 designs")
     assert (found["modes"], found["twisting"]) == ("twisting mixed", "d1 d2 d3 d4")
+    # There is more to the right, until the table is scrolled to its end.
+    assert found["more"] == [True, True, False]
 
 
 @needs_browser

@@ -34,7 +34,22 @@ function filter(table, text) {
   return `${rows.filter((row) => !row.hidden).length} of ${rows.length} designs`;
 }
 
+// A table with columns beyond its box fades there.
+function fade(box) {
+  const hidden = box.scrollWidth - box.clientWidth - box.scrollLeft;
+  box.classList.toggle("more", hidden > 1);
+}
+
+function prepareBoxes() {
+  const watcher = new ResizeObserver((entries) => entries.forEach(({ target }) => fade(target)));
+  for (const box of document.querySelectorAll(".scroll")) {
+    box.addEventListener("scroll", () => fade(box), { passive: true });
+    watcher.observe(box);
+  }
+}
+
 function prepareTables() {
+  prepareBoxes();
   for (const table of document.querySelectorAll("table.sortable")) {
     for (const heading of table.tHead.rows[0].cells) {
       heading.querySelector("button").addEventListener("click", () => sortBy(table, heading));
