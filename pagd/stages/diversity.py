@@ -105,7 +105,7 @@ def run(
     frame, record = load_generated(dataset, generated)
     config = part(config, "diversity") | _made_with(record, generated)
     own = config["generator"]["method"]
-    _check(settings, method, len(space.designs))
+    _check(config, method, len(space.designs))
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("generate"):
@@ -146,13 +146,21 @@ def _made_with(record: Record, generated: Path) -> dict[str, Any]:
     return part(completed(record.configuration), "generate")
 
 
-def _check(settings: Mapping[str, Any], method: Mapping[str, Any], size: int) -> None:
-    if settings["plane_designs"] > size:
+def _check(config: Mapping[str, Any], method: Mapping[str, Any], size: int) -> None:
+    few = config["diversity"]["plane_designs"]
+    if few > size:
         raise InputError(
-            f"diversity.plane_designs = {settings['plane_designs']} must be at most the number of "
-            f"training designs, {size}."
+            f"diversity.plane_designs = {few} must be at most the number of training designs, "
+            f"{size}."
         )
-    check_perplexity(method, settings["plane_designs"], "diversity.plane_designs")
+    check_perplexity(method, few, "diversity.plane_designs")
+    for key in ("components", "largest_components"):
+        # The plane of a few designs would be without the very generator it is made for.
+        if (value := config["generator"][key]) != "bic" and value > few:
+            raise InputError(
+                f"diversity.plane_designs = {few} must be at least generator.{key} = {value}, "
+                "with which the designs were generated."
+            )
 
 
 @dataclass(frozen=True, eq=False, slots=True)

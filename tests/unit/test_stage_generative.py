@@ -220,6 +220,18 @@ def test_the_comparison_goes_by_what_made_the_designs(study: Path, tmp_path: Pat
     assert {row["generator"] for row in table if row["space"] == "plane_sample"} >= {"gmm_full"}
 
 
+def test_the_plane_of_a_few_designs_has_room_for_the_mixture(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = ("--dataset", study / "dataset", "--embedding", study / "embedding")
+    config = json.dumps({"generator": {"components": 41, "designs": 5, "largest_components": 2}})
+    first = ("generate", *made, "--out", tmp_path / "g", "--config", config)
+    assert main([str(word) for word in first]) == 0
+    assert run("diversity", *made, "--generated", tmp_path / "g", "--out", tmp_path / "d") == 2
+    told = capsys.readouterr().err
+    assert "diversity.plane_designs = 40 must be at least generator.components = 41, " in told
+
+
 def test_designs_of_one_mode_alone_are_not_compared(
     study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
