@@ -8,7 +8,7 @@ and the categories are computed from them.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,13 +17,12 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.preprocessing import OneHotEncoder, StandardScaler
 
 from pagd.dataset.frame import CATEGORICAL, DEPENDENT, INDEPENDENT
+from pagd.design import DECIMALS
 
-__all__ = ["DECIMALS", "Decoded", "Encoder", "Limiter"]
+__all__ = ["Decoded", "Encoder", "Limiter"]
 
 FloatArray = NDArray[np.float64]
 
-#: Designs are given to 0.01 mm and 0.01 degrees, as in Table 2 of the paper.
-DECIMALS: Final = 2
 _ALPHA_DECIMALS = 4
 _NUMBERS = [*INDEPENDENT, *DEPENDENT]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from pagd.dataset.frame import completed, designs_of, frame_of
-from pagd.design import Design, GeometryRules, Mode, violations
+from pagd.design import MODES, Design, GeometryRules, Mode, violations
 from pagd.encoding import Encoder
 from pagd.errors import InputError
 from pagd.generators.interface import Generator, Proposal
@@ -21,7 +21,6 @@ __all__ = ["Generated", "generate"]
 
 FloatArray = NDArray[np.float64]
 
-_MODES: tuple[Mode, ...] = ("bending", "twisting", "mixed")
 # A generator that gives no usable design in so many proposals on end is given up.
 _HOPELESS = 10_000
 _SMALLEST_ROUND = 100
@@ -93,8 +92,8 @@ def generate(
 def _check(count: int, mode: str | None) -> None:
     if count < 1:
         raise InputError(f"generator.designs = {count} must be at least 1.")
-    if mode is not None and mode not in _MODES:
-        raise InputError(f"mode = {mode!r} must be one of {', '.join(_MODES)}.")
+    if mode is not None and mode not in MODES:
+        raise InputError(f"mode = {mode!r} must be one of {', '.join(MODES)}.")
 
 
 @dataclass(slots=True)
@@ -197,7 +196,7 @@ class _Sieve:
             "refused_by_parameter": dict(sorted(self.broken.items())),
             "redrawn_by_generator": self.redrawn,
             "corrections": dict(sorted(self.corrections.items())),
-            "mode_share": {mode: float(modes.get(mode, 0) / len(designs)) for mode in _MODES},
+            "mode_share": {mode: float(modes.get(mode, 0) / len(designs)) for mode in MODES},
         }
 
 

@@ -17,7 +17,7 @@ STAGE_VERSIONS = {
     "mesh": 1,
     "solve": 2,
     "metrics": 1,
-    "figures": 1,
+    "figures": 2,
     "generative_figures": 1,
     "summary": 2,
     "report": 2,
