@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from pagd.errors import InputError, Status
 from pagd.fem.assembly import Assembly
 from pagd.fem.bending import bending_terms
+from pagd.fem.contact import FaceContact
 from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
 from pagd.fem.fields import share_beyond, strains
 from pagd.fem.follower_pressure import FollowerPressure
@@ -54,6 +56,8 @@ class Actuation:
         Largest correction of a node in the last iteration of a step.
     linear_solver
         ``auto``, ``pardiso`` or ``superlu``.
+    contact
+        Whether neighbouring chambers press each other apart where they touch, without friction.
     """
 
     element: str = "taylor_hood"
@@ -63,6 +67,7 @@ class Actuation:
     smallest_step_kPa: float = 0.02
     tolerance_mm: float = 1e-2
     linear_solver: str = "auto"
+    contact: bool = False
 
     def recorded_kPa(self) -> FloatArray:
         """The recorded pressures, in kPa."""
@@ -107,7 +112,8 @@ class ActuationResult:
     figures
         Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``steps``,
         ``rejected_steps``; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole
-        actuator; ``linear_solver``.
+        actuator; ``linear_solver``; with contact ``smallest_gap_mm`` between walls at the end,
+        negative for a penetration, where any are near.
     """
 
     status: Status
@@ -184,6 +190,8 @@ class Body:
         The elastomer, and the sheet at the surface ``paper``.
     element
         One of :data:`ELEMENTS`.
+    contact
+        Whether walls that face each other press each other apart where they touch.
 
     Raises
     ------
@@ -191,7 +199,15 @@ class Body:
         Where a surface is missing, the element unknown, or the paper not flat.
     """
 
-    def __init__(self, mesh: Mesh, material: Elastomer, paper: Sheet, element: str) -> None:
+    def __init__(
+        self,
+        mesh: Mesh,
+        material: Elastomer,
+        paper: Sheet,
+        element: str,
+        *,
+        contact: bool = False,
+    ) -> None:
         if element not in ELEMENTS:
             raise InputError(f"element is {element!r}, but must be one of {', '.join(ELEMENTS)}")
         self.material = material
@@ -206,6 +222,8 @@ class Body:
             self.solid = ElementPressureSolid(mesh.points, mesh.tets, material)
         self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
         terms: list[EnergyTerm] = [self.solid, self.pressure, *_paper_terms(mesh, paper)]
+        self.contact = _contact(mesh) if contact else None
+        terms += [self.contact] if self.contact else []
         self.assembly = Assembly(terms, self.size, self._fixed(mesh))
 
     def _fixed(self, mesh: Mesh) -> NDArray[np.bool_]:
@@ -250,6 +268,27 @@ def _paper_terms(mesh: Mesh, paper: Sheet) -> list[EnergyTerm]:
     return [Membrane(mesh.points, faces, paper), *bending]
 
 
+def _contact(mesh: Mesh) -> FaceContact | None:
+    """Contact of the outer faces that look along the actuator with those that look back."""
+    if "outer" not in mesh.surfaces:
+        return None
+    faces = mesh.surfaces["outer"]
+    corners = mesh.points[faces[:, :3]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    along = normals[:, 0] / np.linalg.norm(normals, axis=1)
+    slaves, masters = faces[along > _LOOKS_ALONG], faces[along < -_LOOKS_ALONG]
+    if len(slaves) == 0 or len(masters) == 0:
+        return None
+    return FaceContact(mesh.points, slaves, masters)
+
+
+# Walls are slanted by up to 45° to the actuator; nothing else of the outside looks along it.
+_LOOKS_ALONG = 0.5
+
+# Where points come into contact or leave it, corrections need not shrink at once.
+_PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0}
+
+
 def free_actuation(
     mesh: Mesh,
     material: Elastomer,
@@ -285,15 +324,15 @@ def free_actuation(
         Where the mesh or the settings cannot be used.
     """
     wanted = actuation or Actuation()
-    body = Body(mesh, material, paper, wanted.element)
+    body = Body(mesh, material, paper, wanted.element, contact=wanted.contact)
     solver = linear_solver(wanted.linear_solver)
     recorder = _Recorder(body, stop, progress)
     recorder(Step(body.assembly.at_rest(), 0, True))
-    settings = NewtonSettings(tolerance=wanted.tolerance_mm)
+    settings = NewtonSettings(tolerance=wanted.tolerance_mm, **(_PATIENT if body.contact else {}))
     control = StepControl(
         first=wanted.first_step_kPa * _KPA, smallest=wanted.smallest_step_kPa * _KPA
     )
-    newton = Newton(body.assembly, solver, 3 * body.nodes, settings)
+    newton = Newton(body.assembly, solver, 3 * body.nodes, settings, body.pressure)
     path = Continuation(newton, control).follow(list(wanted.recorded_kPa() * _KPA), recorder)
     # Where the path ends early, how far it came is a result too.
     recorder.record_last()
@@ -321,7 +360,7 @@ def _ending(path: LoadPath, recorder: _Recorder) -> tuple[Status, str | None]:
 
 
 def _figures(body: Body, path: LoadPath, solver: str) -> dict[str, float | int | str]:
-    return {
+    return _gap(body) | {
         "tets": len(body.solid.nodes),
         "unknowns": len(body.assembly.free),
         "newton_iterations": path.iterations,
@@ -331,6 +370,12 @@ def _figures(body: Body, path: LoadPath, solver: str) -> dict[str, float | int |
         "solid_volume_mm3": body.solid_volume,
         "linear_solver": solver,
     }
+
+
+def _gap(body: Body) -> dict[str, float | int | str]:
+    """Smallest gap between walls at the end, in mm; nothing where no two are near each other."""
+    gap = body.contact.smallest_gap if body.contact else np.inf
+    return {"smallest_gap_mm": gap} if np.isfinite(gap) else {}
 
 
 def use_threads(count: int) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pagd.fem.compiled import compiled
 from pagd.fem.pattern import Pattern, build_pattern
-from pagd.fem.term import ElementSystem, EnergyTerm
+from pagd.fem.term import ElementSystem, EnergyTerm, SearchingTerm
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -57,10 +57,14 @@ class Assembly:
         self.terms = tuple(terms)
         self.size = size
         self.free = np.flatnonzero(~fixed)
-        numbering = np.full(size, -1, np.int64)
-        numbering[self.free] = np.arange(len(self.free))
-        self.pattern: Pattern = build_pattern([t.dofs for t in terms], numbering)
-        self._systems = [ElementSystem.of(t.dofs) for t in terms]
+        self._numbering = np.full(size, -1, np.int64)
+        self._numbering[self.free] = np.arange(len(self.free))
+        self._searching = [t for t in self.terms if isinstance(t, SearchingTerm)]
+        self._make_room()
+
+    def _make_room(self) -> None:
+        self.pattern: Pattern = build_pattern([t.dofs for t in self.terms], self._numbering)
+        self._systems = [ElementSystem.of(t.dofs) for t in self.terms]
         # One more place than there are entries: what concerns held unknowns goes there.
         self._values = np.empty(self.pattern.entries + 1)
 
@@ -68,11 +72,25 @@ class Assembly:
         """The undeformed, unloaded state."""
         return State(0.0, np.zeros(self.size), tuple(t.internal_at_rest() for t in self.terms))
 
+    def look_around(self, state: State) -> None:
+        """Let the terms that search see what is near; :attr:`pattern` is a new one if it grew."""
+        grown = [term.update(state.unknowns) for term in self._searching]
+        if any(grown):
+            self._make_room()
+
     def linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
         """Energy, residual (size,) and matrix values (z,) of the pattern.
 
-        Where the energy is infinite the state is inadmissible and the rest not to be used.
+        Where the energy is infinite the state is inadmissible and the rest not to be used. The
+        pattern may be a new one where something has come near since :meth:`look_around`.
         """
+        result = self._linearize(state)
+        if np.isfinite(result[0]) and not all(term.is_complete for term in self._searching):
+            self.look_around(state)
+            return self._linearize(state)
+        return result
+
+    def _linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
         energy = 0.0
         residual = np.zeros(self.size)
         self._values[:] = 0.0

@@ -35,6 +35,8 @@ class StepControl:
         Largest factor after a try that did not converge.
     order
         Degree of the polynomial.
+    patience
+        Tries on end that may fail to converge, however large the step is.
     """
 
     first: float = 2.5e-4
@@ -44,15 +46,19 @@ class StepControl:
     cut: float = 0.25
     retry: float = 0.6
     order: int = 2
+    patience: int = 20
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that converged from a guess through ``states`` states."""
-        factor = min(max(self._factor(first_correction, states), self.cut), self.growth)
-        return max(taken * factor, self.smallest)
+        return max(taken * self.factor(first_correction, states), self.smallest)
 
     def retry_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that did not converge."""
         return taken * min(max(self._factor(first_correction, states), self.cut), self.retry)
+
+    def factor(self, first_correction: float, states: int) -> float:
+        """Factor from a step that converged to the next one, within the limits."""
+        return min(max(self._factor(first_correction, states), self.cut), self.growth)
 
     def _factor(self, first_correction: float, states: int) -> float:
         if not 0 < first_correction < math.inf:
@@ -92,11 +98,16 @@ Boundary = Callable[[float, FloatArray], None]
 
 def extrapolate(states: Sequence[State], load: float) -> State:
     """The Lagrange polynomial through ``states`` at ``load``, internal variables included."""
-    loads = [s.load for s in states]
+    return replace(interpolate(states, [s.load for s in states], load), load=load)
+
+
+def interpolate(states: Sequence[State], places: Sequence[float], place: float) -> State:
+    """The Lagrange polynomial through ``states`` at ``places``, the load included."""
     factors = [
-        math.prod((load - b) / (a - b) for j, b in enumerate(loads) if j != i)
-        for i, a in enumerate(loads)
+        math.prod((place - b) / (a - b) for j, b in enumerate(places) if j != i)
+        for i, a in enumerate(places)
     ]
+    load = sum(f * s.load for f, s in zip(factors, states, strict=True))
     unknowns = sum((f * s.unknowns for f, s in zip(factors, states, strict=True)), np.zeros(1))
     internal = tuple(
         np.asarray(sum(f * s.internal[k] for f, s in zip(factors, states, strict=True)))
@@ -124,6 +135,8 @@ class Continuation:
         self._newton = newton
         self._control = control or StepControl()
         self._boundary = boundary
+        #: The last states of the path, as many as a first guess is made of.
+        self.states: list[State] = []
 
     def follow(self, loads: Sequence[float], observe: Observer) -> LoadPath:
         """Raise the load from rest through each of ``loads``, which must increase.
@@ -132,8 +145,8 @@ class Continuation:
         """
         control = self._control
         path = LoadPath(0.0, 0, 0, 0)
-        states = [self._newton.assembly.at_rest()]
-        step = control.first
+        states = self.states = [self._newton.assembly.at_rest()]
+        step, rejections = control.first, 0
         for target in loads:
             while states[-1].load < target:
                 load = _next_load(states[-1].load, target, step)
@@ -142,13 +155,13 @@ class Continuation:
                 correction = result.corrections[0] if result.corrections else math.inf
                 path = replace(path, iterations=path.iterations + result.iterations)
                 if result.state is None:
-                    step = control.retry_step(taken, correction, known)
+                    step, rejections = control.retry_step(taken, correction, known), rejections + 1
                     path = replace(path, rejected=path.rejected + 1)
-                    if step < control.smallest:
+                    if step < control.smallest or rejections > control.patience:
                         return replace(path, failure=result.reason)
                     continue
-                states = [*states, result.state][-control.order - 1 :]
-                path = replace(path, load=load, steps=path.steps + 1)
+                states = self.states = [*states, result.state][-control.order - 1 :]
+                path, rejections = replace(path, load=load, steps=path.steps + 1), 0
                 stop = observe(Step(result.state, result.iterations, load == target))
                 if stop:
                     return replace(path, stopped=stop)

@@ -196,6 +196,13 @@ class FollowerPressure:
         """The potential −p V, in mJ."""
         return -load * self.volume(unknowns)
 
+    def conjugate(self, unknowns: FloatArray) -> tuple[float, FloatArray]:
+        """The volume V in mm³, conjugate to the pressure, and its gradient (size,)."""
+        volume = self._fill(unknowns, 1.0, self._scratch)
+        flat = self.dofs.ravel()
+        slopes = np.bincount(flat, self._scratch.residual.ravel(), minlength=len(unknowns))
+        return volume, np.asarray(slopes, dtype=np.float64)
+
     def volume(self, unknowns: FloatArray) -> float:
         """The enclosed volume V, in mm³."""
         return self._fill(unknowns, 0.0, self._scratch)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import cache
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,10 @@ class LinearSolver(Protocol):
 
         Raises ``SingularMatrixError``.
         """
+        ...
+
+    def solve_again(self, right: FloatArray) -> FloatArray:
+        """Solve for another right-hand side (m,) with the matrix factorised last."""
         ...
 
     def free(self) -> None:
@@ -87,6 +91,7 @@ class PardisoSolver:
             self._parameters[index] = value
         self._analysed = False
         self._starts = self._columns = np.zeros(0, np.int32)
+        self._values: FloatArray = np.zeros(0)
 
     def _phase(self, phase: int, values: FloatArray, right: FloatArray) -> FloatArray:
         result = np.zeros_like(right)
@@ -130,9 +135,14 @@ class PardisoSolver:
             self._phase(self._ANALYSE, values, right)
             self._analysed = True
         self._phase(self._FACTORISE, values, right)
-        result = self._phase(self._SOLVE, values, right)
+        self._values = values
+        return self.solve_again(right)
+
+    def solve_again(self, right: FloatArray) -> FloatArray:
+        """Solve with the factors of the last call of :meth:`solve`, and its values unchanged."""
+        result = self._phase(self._SOLVE, self._values, right)
         if self._parameters[self._PERTURBED_PIVOTS]:
-            self._check(values, right, result)
+            self._check(self._values, right, result)
         return result
 
     def _check(self, values: FloatArray, right: FloatArray, result: FloatArray) -> None:
@@ -160,6 +170,7 @@ class SuperLUSolver:
 
     def __init__(self) -> None:
         self._starts = self._columns = np.zeros(0, np.int32)
+        self._factors: Any = None
 
     def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
         """Take a pattern; SuperLU orders it anew at each factorisation."""
@@ -175,10 +186,14 @@ class SuperLUSolver:
         diagonal = csr_array((upper.diagonal(), (np.arange(size), np.arange(size))))
         full = csc_array(upper + upper.T - diagonal)
         try:
-            result = splu(full, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01).solve(right)
+            self._factors = splu(full, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01)
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from None
-        return np.asarray(result)
+        return self.solve_again(right)
+
+    def solve_again(self, right: FloatArray) -> FloatArray:
+        """Solve with the factors of the last call of :meth:`solve`."""
+        return np.asarray(self._factors.solve(right))
 
     def free(self) -> None:
         """Nothing is kept between calls."""

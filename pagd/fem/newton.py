@@ -1,15 +1,25 @@
-"""Newton's method at a fixed load."""
+"""Newton's method at a fixed load, or at a fixed value of what is conjugate to it.
+
+At a fixed load λ a correction solves K δu = −r. At a fixed conjugate c(u) = c*, the volume for a
+pressure, the load is an unknown too. With b = ∂c/∂u, and r growing by −b with the load,
+
+    K δu − b δλ = −r,    b · δu = c* − c,
+
+which takes one more solution with the same factors, K w = b. K is singular at a limit point of the
+load, and only there; the path passes through it from step to step.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import Assembly, State
 from pagd.fem.linear_solver import LinearSolver, SingularMatrixError
+from pagd.fem.term import LoadTerm
 
 FloatArray = NDArray[np.float64]
 
@@ -29,12 +39,16 @@ class NewtonSettings:
         A correction of a node beyond this, in mm, ends the try.
     smallest_fraction
         A correction is halved while it leads to an inadmissible state, down to this.
+    growth
+        A correction larger than the one before it, after the second, ends the try; with a number,
+        one larger than so many times the larger of the first two.
     """
 
     tolerance: float = 1e-2
     iterations: int = 8
     largest_correction: float = 50.0
     smallest_fraction: float = 1 / 16
+    growth: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +74,8 @@ class Newton:
         The first so many unknowns are displacements, in mm; the tolerance is theirs.
     settings
         Tolerance and limits.
+    load_term
+        The term of the assembly that the load acts through; needed to hold its conjugate.
     """
 
     def __init__(
@@ -68,24 +84,34 @@ class Newton:
         solver: LinearSolver,
         displacements: int,
         settings: NewtonSettings | None = None,
+        load_term: LoadTerm | None = None,
     ) -> None:
         self.assembly = assembly
+        self.load_term = load_term
         self.solver = solver
         self.settings = settings or NewtonSettings()
         self._displacements = displacements
-        solver.analyse(assembly.pattern.starts, assembly.pattern.columns)
+        self._analyse()
 
-    def solve(self, guess: State) -> NewtonResult:
-        """Iterate from ``guess``; failing to converge is a result, not an error."""
+    def _analyse(self) -> None:
+        self._pattern = self.assembly.pattern
+        self.solver.analyse(self._pattern.starts, self._pattern.columns)
+
+    def solve(self, guess: State, conjugate: float | None = None) -> NewtonResult:
+        """Iterate from ``guess``; failing to converge is a result, not an error.
+
+        At the load of the guess, or at the given value of its ``conjugate``.
+        """
         settings = self.settings
         corrections: list[float] = []
         state = guess
+        self.assembly.look_around(state)
         energy, residual, values = self.assembly.linearize(state)
         if not np.isfinite(energy):
             return NewtonResult(None, 0, (), "the first guess inverts elements")
         while len(corrections) < settings.iterations:
             try:
-                correction = self._correction(residual, values)
+                correction, load = self._correction(state, residual, values, conjugate)
             except SingularMatrixError as error:
                 return NewtonResult(None, len(corrections), tuple(corrections), str(error))
             size = float(np.abs(correction[: self._displacements]).max())
@@ -93,9 +119,9 @@ class Newton:
             if not size < settings.largest_correction or _diverges(corrections, settings):
                 break
             if size < settings.tolerance:
-                final = self.assembly.advance(state, correction)
+                final = _loaded(self.assembly.advance(state, correction), load)
                 return NewtonResult(final, len(corrections), tuple(corrections))
-            step = self._admissible_step(state, correction)
+            step = self._admissible_step(state, correction, load)
             if step is None:
                 return NewtonResult(
                     None, len(corrections), tuple(corrections), "the correction inverts elements"
@@ -104,15 +130,27 @@ class Newton:
         reason = "corrections in mm: " + ", ".join(f"{c:.1e}" for c in corrections)
         return NewtonResult(None, len(corrections), tuple(corrections), reason)
 
-    def _correction(self, residual: FloatArray, values: FloatArray) -> FloatArray:
-        """The Newton correction (size,), zero for held unknowns."""
+    def _correction(
+        self, state: State, residual: FloatArray, values: FloatArray, conjugate: float | None
+    ) -> tuple[FloatArray, float]:
+        """The Newton correction (size,), zero for held unknowns, and that of the load."""
+        if self.assembly.pattern is not self._pattern:
+            self._analyse()
         free = self.assembly.free
         correction = np.zeros(self.assembly.size)
         correction[free] = self.solver.solve(values, -residual[free])
-        return correction
+        if conjugate is None:
+            return correction, 0.0
+        if self.load_term is None:
+            raise ValueError("to hold the conjugate of the load, Newton's method needs its term")
+        value, slopes = self.load_term.conjugate(state.unknowns)
+        by_load = np.zeros(self.assembly.size)
+        by_load[free] = self.solver.solve_again(slopes[free])
+        load = float((conjugate - value - slopes @ correction) / (slopes @ by_load))
+        return correction + load * by_load, load
 
     def _admissible_step(
-        self, state: State, correction: FloatArray
+        self, state: State, correction: FloatArray, load: float
     ) -> tuple[State, FloatArray, FloatArray] | None:
         """The corrected state, linearised; a part of the correction where all of it inverts."""
         fraction = 1.0
@@ -121,6 +159,7 @@ class Newton:
                 # advance() starts from the state linearised last: go back to it.
                 self.assembly.linearize(state)
             trial = self.assembly.advance(state, fraction * correction)
+            trial = _loaded(trial, fraction * load)
             energy, residual, values = self.assembly.linearize(trial)
             if np.isfinite(energy):
                 return trial, residual, values
@@ -128,7 +167,14 @@ class Newton:
         return None
 
 
+def _loaded(state: State, more: float) -> State:
+    return replace(state, load=state.load + more)
+
+
 def _diverges(corrections: Sequence[float], settings: NewtonSettings) -> bool:
     """Whether the corrections grow again after the second, which may exceed the first."""
-    grows = len(corrections) > 2 and corrections[-1] > corrections[-2]
-    return grows and corrections[-1] > 10 * settings.tolerance
+    if len(corrections) < 3 or corrections[-1] <= 10 * settings.tolerance:
+        return False
+    if settings.growth is None:
+        return corrections[-1] > corrections[-2]
+    return corrections[-1] > settings.growth * max(corrections[:2])

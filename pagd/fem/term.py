@@ -10,7 +10,7 @@ unknowns and condensed out element by element, such as an element pressure.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +70,28 @@ class EnergyTerm(Protocol):
 
     def energy(self, unknowns: FloatArray, load: float) -> float:
         """The energy alone, internal variables taken as consistent with the unknowns."""
+        ...
+
+
+class LoadTerm(EnergyTerm, Protocol):
+    """The term through which the load λ acts: −λ c(u), linear in λ."""
+
+    def conjugate(self, unknowns: FloatArray) -> tuple[float, FloatArray]:
+        """The quantity c conjugate to the load, such as a volume, and its gradient (size,)."""
+        ...
+
+
+@runtime_checkable
+class SearchingTerm(EnergyTerm, Protocol):
+    """A term that couples what happens to be near: its ``dofs`` grow along the path."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all that acts at the state linearised last is coupled in ``dofs``."""
+        ...
+
+    def update(self, unknowns: FloatArray) -> bool:
+        """Look around at a state; whether ``dofs`` has grown."""
         ...
 
 

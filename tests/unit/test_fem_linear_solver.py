@@ -55,6 +55,15 @@ def analyse(solver: LinearSolver, matrix: csr_array) -> FloatArray:
     return np.asarray(upper.data)
 
 
+def test_another_right_hand_side_takes_the_same_factors(solver: LinearSolver) -> None:
+    matrix = saddle_point()
+    values = analyse(solver, matrix)
+    first, second = np.linspace(-1, 2, matrix.shape[0]), np.cos(np.arange(matrix.shape[0]))
+    solver.solve(values, first)
+    np.testing.assert_allclose(matrix @ solver.solve_again(second), second, atol=1e-9)
+    np.testing.assert_allclose(matrix @ solver.solve_again(first), first, atol=1e-9)
+
+
 def test_solution_of_an_indefinite_system(solver: LinearSolver) -> None:
     matrix = saddle_point()
     values, right = analyse(solver, matrix), np.linspace(-1, 2, matrix.shape[0])

@@ -8,6 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from cases_actuators import balance_of_energy, element_table, other_library, resultants, symmetries
+from cases_contact import narrow_row, two_blocks
 from cases_inflation import inflation
 from cases_paper import paper
 from cases_solid import (
@@ -38,6 +39,8 @@ CASES: tuple[Case, ...] = (
     balance_of_energy,
     resultants,
     symmetries,
+    two_blocks,
+    narrow_row,
 )
 
 

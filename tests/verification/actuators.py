@@ -38,15 +38,20 @@ def default_paper() -> Sheet:
     return sheet("paper", find_material(_MATERIALS, "paper", "paper"))
 
 
-@lru_cache(maxsize=8)
 def mesh_of(name: str, size: float, half: bool = False) -> Mesh:
     """Mesh of a design of Table 2 with elements of a size (mm), or of its half y ≥ 0."""
+    return mesh_of_design(design(name), size, half)
+
+
+@lru_cache(maxsize=8)
+def mesh_of_design(drawn: Design, size: float, half: bool = False) -> Mesh:
+    """The same for any design."""
     with tempfile.TemporaryDirectory() as folder:
         parts = []
         for part in ("body", "base"):
-            drawn, repaired = Path(folder, f"{part}.stl"), Path(folder, f"{part}_repaired.stl")
-            render(design(name), GeometryRules(), part, drawn, half=half)
-            repair(drawn, repaired)
+            raw, repaired = Path(folder, f"{part}.stl"), Path(folder, f"{part}_repaired.stl")
+            render(drawn, GeometryRules(), part, raw, half=half)
+            repair(raw, repaired)
             parts.append(repaired)
         return GmshMesher()(SurfacePair.from_stl(*parts, half), size)
 

@@ -1,0 +1,124 @@
+"""Following the path past limit points of the load, by what is conjugate to it.
+
+A thin wall under rising pressure balloons: the pressure passes a maximum, falls, and rises again
+as the material stiffens. A rising pressure has no equilibrium there, a rising volume has. Beyond
+the first limit point the wanted loads are those of the branch that reaches them next.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from pagd.fem.assembly import State
+from pagd.fem.continuation import LoadPath, Observer, Step, StepControl, interpolate
+from pagd.fem.newton import Newton, NewtonResult
+from pagd.fem.term import LoadTerm
+
+# Tries to land on a wanted load between two states, each of which brings them nearer.
+_LANDINGS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class _Point:
+    """A state and its conjugate."""
+
+    state: State
+    conjugate: float
+
+
+class ConjugatePath:
+    """Goes on from known states by steps of the conjugate.
+
+    Parameters
+    ----------
+    newton
+        Newton's method, with its load term.
+    control
+        How the error of a first guess chooses the next step; its loads do not matter here.
+    smallest_share
+        A step below this share of the first one is the end.
+    """
+
+    def __init__(self, newton: Newton, control: StepControl, smallest_share: float = 1e-3) -> None:
+        if newton.load_term is None:
+            raise ValueError("to step by the conjugate of the load, its term is needed")
+        self._newton, self._control, self._smallest = newton, control, smallest_share
+        self._term: LoadTerm = newton.load_term
+
+    def follow(
+        self, known: Sequence[State], loads: Sequence[float], observe: Observer, path: LoadPath
+    ) -> LoadPath:
+        """Raise the conjugate from the last of the ``known`` states, two at least.
+
+        ``loads`` are those still wanted; ``path`` is what there is of the path. Ends where the
+        last load is reached, or ``observe`` stops it, or no step converges.
+        """
+        control, wanted, path = self._control, list(loads), replace(path, failure="")
+        points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
+        step = first = points[-1].conjugate - points[-2].conjugate
+        while wanted:
+            taken, count = step, len(points)
+            result = self._try(points, points[-1].conjugate + step)
+            correction = result.corrections[0] if result.corrections else math.inf
+            path = replace(path, iterations=path.iterations + result.iterations)
+            if result.state is None:
+                step = control.retry_step(taken, correction, count)
+                path = replace(path, rejected=path.rejected + 1)
+                if step < self._smallest * first:
+                    return replace(path, failure=result.reason)
+                continue
+            point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])
+            for landed in self._landings(points[-1], point, wanted):
+                path = _longer(path, landed)
+                stop = observe(landed)
+                if stop or not wanted:
+                    return replace(path, stopped=stop or "")
+            points = [*points, point][-control.order - 1 :]
+            reached = Step(result.state, result.iterations, False)
+            path = replace(path, load=result.state.load, steps=path.steps + 1)
+            stop = observe(reached)
+            if stop:
+                return replace(path, stopped=stop)
+            step = taken * control.factor(correction, count)
+        return path
+
+    def _try(self, points: Sequence[_Point], conjugate: float) -> NewtonResult:
+        places = [point.conjugate for point in points]
+        guess = interpolate([point.state for point in points], places, conjugate)
+        return self._newton.solve(guess, conjugate)
+
+    def _landings(self, before: _Point, after: _Point, wanted: list[float]) -> Iterator[Step]:
+        """States at the wanted loads between two points; those reached leave the list."""
+        while wanted and before.state.load < wanted[0] <= after.state.load:
+            landed = self._land(before, after, wanted[0])
+            wanted.pop(0)
+            if landed is not None:
+                yield landed
+
+    def _land(self, before: _Point, after: _Point, load: float) -> Step | None:
+        iterations = 0
+        for _ in range(_LANDINGS):
+            ends = [before.state, after.state]
+            guess = interpolate(ends, [s.load for s in ends], load)
+            result = self._newton.solve(guess)
+            iterations += result.iterations
+            if result.state is not None:
+                return Step(result.state, iterations, True)
+            middle = self._try([before, after], (before.conjugate + after.conjugate) / 2)
+            iterations += middle.iterations
+            if middle.state is None:
+                return None
+            point = _Point(middle.state, (before.conjugate + after.conjugate) / 2)
+            before, after = (point, after) if point.state.load < load else (before, point)
+        return None
+
+
+def _longer(path: LoadPath, step: Step) -> LoadPath:
+    return replace(
+        path,
+        load=step.state.load,
+        steps=path.steps + 1,
+        iterations=path.iterations + step.iterations,
+    )

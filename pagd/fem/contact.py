@@ -1,0 +1,223 @@
+"""Frictionless contact between two sets of faces, as an energy of the gap between them.
+
+The potential is ∫ ψ(g) dA over the undeformed slave faces, g the gap to the nearest master face
+and ψ a penalty whose pressure begins without a kink (:func:`contact_kernels.pressure_law`): with
+stiffness ε the pressure p presses the faces p/ε into each other. Residual and tangent are exact
+derivatives of it; the tangent is symmetric.
+
+Which faces are near changes along the path. The pairs of faces that the tangent couples are kept
+in a set that only grows, and :meth:`FaceContact.update` tells when it has.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from pagd.fem import contact_kernels as kernels
+from pagd.fem import shapes
+from pagd.fem.quadrature import triangle
+from pagd.fem.term import NO_INTERNAL, ElementSystem, node_dofs
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactLaw:
+    """How contact is enforced.
+
+    Attributes
+    ----------
+    stiffness
+        Pressure by penetration ε, in MPa/mm.
+    width
+        Pressure begins at this gap, in mm, and is linear in the penetration beyond it.
+    reach
+        Faces with a point nearer than this, in mm, are coupled.
+    deepest
+        A face farther behind another than this, in mm, is no penetration but the far side of it.
+    """
+
+    stiffness: float = 20.0
+    width: float = 0.04
+    reach: float = 0.5
+    deepest: float = 0.75
+
+
+class FaceContact:
+    """Contact between slave and master faces.
+
+    Parameters
+    ----------
+    points
+        Reference coordinates (n, 3) in mm.
+    slaves, masters
+        Six-node faces (S, 6) and (M, 6), pointing out of the solid.
+    law
+        Penalty and distances.
+    """
+
+    name = "contact"
+
+    def __init__(
+        self, points: FloatArray, slaves: IntArray, masters: IntArray, law: ContactLaw | None = None
+    ) -> None:
+        self.law = law or ContactLaw()
+        self._points = points
+        self._slaves, self._masters = slaves, masters
+        rule = triangle(4)
+        self._values = shapes.triangle_values(rule.points)
+        self._areas = _areas(points, slaves, rule.points) * rule.weights
+        self._starts = np.zeros(len(slaves) + 1, np.int64)
+        self._candidates = np.zeros(0, np.int64)
+        self._pairs = np.zeros(0, np.int64)
+        self._keys = np.zeros(0, np.int64)
+        self._found = _Found.room(len(slaves), len(self._values))
+        self.dofs: IntArray = np.zeros((0, 36), np.int64)
+
+    def update(self, unknowns: FloatArray) -> bool:
+        """Look for near faces at a state; whether ``dofs`` has grown by new pairs."""
+        positions = self._positions(unknowns)
+        self._search(positions)
+        self._project(positions)
+        keys = np.union1d(self._keys, self._near_keys())
+        grown = len(keys) > len(self._keys)
+        if grown:
+            self._keys = keys
+            slave, master = np.divmod(keys, len(self._masters))
+            self.dofs = node_dofs(np.hstack([self._slaves[slave], self._masters[master]]))
+        self._pairs = self._numbers(self._candidate_keys())
+        return grown
+
+    def internal_at_rest(self) -> FloatArray:
+        """There are none."""
+        return NO_INTERNAL
+
+    def linearize(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
+    ) -> float:
+        """Fill the element system; see :class:`pagd.fem.term.EnergyTerm`."""
+        positions = self._positions(unknowns)
+        self._project(positions)
+        system.residual[:] = 0.0
+        system.tangent[:] = 0.0
+        found = self._found
+        kernels.linearize_contact(
+            positions,
+            self._slaves,
+            self._masters,
+            self._values,
+            self._areas,
+            self._candidates,
+            self._pairs,
+            found.gaps,
+            found.entries,
+            found.parameters,
+            self.law.stiffness,
+            self.law.width,
+            system.residual,
+            system.tangent,
+            found.energies,
+        )
+        return float(found.energies.sum())
+
+    def advance(self, correction: FloatArray) -> FloatArray:
+        """Nothing to advance."""
+        return NO_INTERNAL
+
+    def energy(self, unknowns: FloatArray, load: float) -> float:
+        """Energy of the penetration, in mJ."""
+        return self.linearize(unknowns, NO_INTERNAL, load, ElementSystem.of(self.dofs))
+
+    @property
+    def smallest_gap(self) -> float:
+        """Smallest gap (mm) at the state seen last; infinite where nothing is near."""
+        return float(self._found.gaps.min(initial=np.inf))
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every point in contact at the state seen last has its pair in ``dofs``."""
+        found = self._found
+        touching = (found.entries >= 0) & (found.gaps < self.law.width)
+        return bool((self._pairs[found.entries[touching]] >= 0).all())
+
+    def _positions(self, unknowns: FloatArray) -> FloatArray:
+        count = self._points.size
+        return self._points + unknowns[:count].reshape(-1, 3)
+
+    def _search(self, positions: FloatArray) -> None:
+        """Candidates: masters whose ball meets that of a slave, widened by the reach."""
+        centres, radii = _balls(positions, self._slaves)
+        others, sizes = _balls(positions, self._masters)
+        largest = self.law.reach + sizes.max(initial=0.0)
+        near = KDTree(others).query_ball_point(centres, radii + largest, return_sorted=True)
+        counts = np.array([len(found) for found in near], np.int64)
+        self._starts = np.concatenate([[0], np.cumsum(counts)])
+        self._candidates = np.concatenate([*near, []]).astype(np.int64)
+
+    def _project(self, positions: FloatArray) -> None:
+        found = self._found
+        kernels.find_gaps(
+            positions,
+            self._slaves,
+            self._masters,
+            self._values,
+            self._starts,
+            self._candidates,
+            self.law.deepest,
+            found.gaps,
+            found.entries,
+            found.parameters,
+        )
+
+    def _candidate_keys(self) -> IntArray:
+        slaves = np.repeat(np.arange(len(self._slaves)), np.diff(self._starts))
+        return np.asarray(slaves * len(self._masters) + self._candidates)
+
+    def _near_keys(self) -> IntArray:
+        """Keys of the pairs with a point nearer than the reach."""
+        near = (self._found.entries >= 0) & (self._found.gaps < self.law.reach)
+        return np.unique(self._candidate_keys()[self._found.entries[near]])
+
+    def _numbers(self, keys: IntArray) -> IntArray:
+        """Number of the pair of each key, −1 where it is none."""
+        if len(self._keys) == 0:
+            return np.full(len(keys), -1, np.int64)
+        places = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        return np.where(self._keys[places] == keys, places, -1)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Found:
+    """What the projection has found for each slave point, and the energy of each slave face."""
+
+    gaps: FloatArray
+    entries: IntArray
+    parameters: FloatArray
+    energies: FloatArray
+
+    @classmethod
+    def room(cls, faces: int, points: int) -> _Found:
+        shape = (faces, points)
+        return cls(
+            np.full(shape, np.inf), np.full(shape, -1), np.zeros((*shape, 2)), np.zeros(faces)
+        )
+
+
+def _areas(points: FloatArray, faces: IntArray, places: FloatArray) -> FloatArray:
+    """Area by unit weight (F, Q) at barycentric places; half the cross product of the tangents."""
+    slopes = shapes.triangle_derivatives(places)
+    tangents = np.einsum("qka,fki->fqai", slopes, points[faces])
+    normals = np.cross(tangents[:, :, 0], tangents[:, :, 1])
+    return np.asarray(np.linalg.norm(normals, axis=-1) / 2)
+
+
+def _balls(positions: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Centres (F, 3) and radii (F,) of balls around the nodes of faces."""
+    nodes = positions[faces]
+    centres = nodes[:, :3].mean(axis=1)
+    return centres, np.linalg.norm(nodes - centres[:, None], axis=2).max(axis=1)

@@ -1,0 +1,168 @@
+"""Contact between faces: gaps, derivatives, balance of forces, and two blocks pressed together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fem_checks import check_derivatives, moved, residual
+from numpy.typing import NDArray
+
+from pagd.fem.contact import ContactLaw, FaceContact
+from pagd.fem.contact_kernels import pressure_law, project
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def patch(height: float, up: bool, shift: float = 0.0) -> tuple[FloatArray, IntArray]:
+    """A square of 4 mm of eight six-node faces at z = height, that looks up or down."""
+    steps = np.linspace(0, 4, 5) + shift
+    points = np.array([[x, y, height] for x in steps for y in steps])
+    faces = []
+    for i, j in ((0, 0), (0, 2), (2, 0), (2, 2)):
+        a, b, c, d = (i, j), (i + 2, j), (i + 2, j + 2), (i, j + 2)
+        for corners in ((a, b, c), (a, c, d)):
+            turned = corners if up else corners[::-1]
+            middles = [
+                ((p[0] + q[0]) // 2, (p[1] + q[1]) // 2)
+                for p, q in zip(turned, (*turned[1:], turned[0]), strict=True)
+            ]
+            faces.append([5 * p + q for p, q in (*turned, *middles)])
+    return points, np.array(faces)
+
+
+def facing(gap: float, law: ContactLaw) -> tuple[FaceContact, FloatArray]:
+    """Contact of a lower patch (master) with an upper one (slave), and their points."""
+    lower, masters = patch(0.0, up=True)
+    upper, slaves = patch(gap, up=False, shift=0.3)
+    points = np.vstack([lower, upper])
+    return FaceContact(points, slaves + len(lower), masters, law), points
+
+
+def waves(points: FloatArray, size: float = 0.05, seed: int = 0) -> FloatArray:
+    return size * np.random.default_rng(seed).normal(size=points.size)
+
+
+@pytest.mark.parametrize(("width", "step"), [(0.02, 1e-6), (0.3, 1e-5)])
+def test_derivatives_on_curved_faces(width: float, step: float) -> None:
+    contact, points = facing(-0.03, ContactLaw(stiffness=5.0, width=width, reach=1.0))
+    unknowns = waves(points)
+    assert contact.update(unknowns)
+    check_derivatives(contact, unknowns, step=step)
+
+
+def test_a_rigid_motion_changes_nothing() -> None:
+    contact, points = facing(-0.03, ContactLaw(width=0.3, reach=1.0))
+    unknowns = waves(points)
+    contact.update(unknowns)
+    before = contact.energy(unknowns, 0.0)
+    contact.update(moved(points, unknowns))
+    assert before > 0
+    assert contact.energy(moved(points, unknowns), 0.0) == pytest.approx(before, rel=1e-9)
+
+
+def test_forces_and_moments_are_in_balance() -> None:
+    contact, points = facing(-0.03, ContactLaw(width=0.3, reach=1.0))
+    unknowns = waves(points)
+    contact.update(unknowns)
+    forces = residual(contact, unknowns).reshape(-1, 3)
+    places = points + unknowns.reshape(-1, 3)
+    assert np.abs(forces).max() > 1e-3
+    np.testing.assert_allclose(forces.sum(axis=0), 0, atol=1e-12)
+    np.testing.assert_allclose(np.cross(places, forces).sum(axis=0), 0, atol=1e-10)
+
+
+def test_flat_faces_press_by_the_penalty_times_the_area() -> None:
+    """Penetration 0.1 mm everywhere: the pressure is 20 MPa/mm · 0.1 mm on 3.7² mm² of overlap."""
+    law = ContactLaw(stiffness=20.0, width=0.02, reach=0.5)
+    contact, points = facing(-0.1, law)
+    unknowns = np.zeros(points.size)
+    contact.update(unknowns)
+    force = residual(contact, unknowns).reshape(-1, 3)[25:, 2].sum()
+    # Points of the slave beyond the edge of the master press nothing: an integral by points.
+    assert force == pytest.approx(-2.0 * 3.7**2, rel=0.1)
+    assert contact.smallest_gap == pytest.approx(-0.1)
+
+
+def test_nothing_presses_beyond_the_width() -> None:
+    contact, points = facing(0.05, ContactLaw(width=0.04, reach=0.5))
+    unknowns = np.zeros(points.size)
+    assert contact.update(unknowns)  # near enough to be coupled
+    assert contact.energy(unknowns, 0.0) == 0.0
+    assert contact.smallest_gap == pytest.approx(0.05)
+
+
+def test_faces_out_of_reach_are_not_coupled() -> None:
+    contact, points = facing(1.0, ContactLaw(reach=0.5))
+    assert not contact.update(np.zeros(points.size))
+    assert len(contact.dofs) == 0
+    assert contact.energy(np.zeros(points.size), 0.0) == 0.0
+
+
+def test_the_far_side_of_a_wall_is_no_penetration() -> None:
+    contact, points = facing(-2.0, ContactLaw(deepest=0.75))
+    contact.update(np.zeros(points.size))
+    assert contact.smallest_gap == math.inf
+
+
+def test_pairs_only_grow_and_keep_what_they_were() -> None:
+    contact, points = facing(0.3, ContactLaw(reach=0.5))
+    unknowns = np.zeros(points.size)
+    contact.update(unknowns)
+    first = contact.dofs.copy()
+    assert not contact.update(unknowns)
+    shifted = unknowns.reshape(-1, 3).copy()
+    shifted[25:, 0] += 1.5
+    assert contact.update(shifted.ravel())
+    both = {tuple(row) for row in contact.dofs}
+    assert {tuple(row) for row in first} < both
+
+
+def test_a_point_without_its_pair_is_noticed() -> None:
+    contact, points = facing(0.6, ContactLaw(reach=0.5, width=0.02))
+    unknowns = np.zeros(points.size)
+    contact.update(unknowns)
+    contact.energy(unknowns, 0.0)
+    assert contact.is_complete
+    closed = unknowns.reshape(-1, 3).copy()
+    closed[25:, 2] -= 0.62
+    contact.energy(closed.ravel(), 0.0)
+    assert not contact.is_complete
+    contact.update(closed.ravel())
+    contact.energy(closed.ravel(), 0.0)
+    assert contact.is_complete
+
+
+def test_the_pressure_has_no_kink() -> None:
+    stiffness, width, step = 20.0, 0.04, 1e-7
+    for gap in (-0.1, -width, -0.01, 0.0, 0.02, width, 0.1):
+        energy, slope, curvature = pressure_law(gap, stiffness, width)
+        ahead, behind = (pressure_law(gap + s, stiffness, width) for s in (step, -step))
+        assert (ahead[0] - behind[0]) / (2 * step) == pytest.approx(slope, abs=1e-6)
+        assert abs(ahead[2] - curvature) < 1e-3
+        assert energy >= 0
+        assert slope <= 0
+    assert pressure_law(-0.1, stiffness, width)[1] == pytest.approx(-2.0)
+
+
+def test_the_closest_point_on_a_curved_face() -> None:
+    """A face bent to z = x²/10: the closest point to one above it has its normal through it."""
+    corners = np.array([[0, 0], [4, 0], [0, 4]], float)
+    flat = np.vstack([corners, (corners + np.roll(corners, -1, axis=0)) / 2])
+    positions = np.column_stack([flat, flat[:, 0] ** 2 / 10])
+    x = 1.3
+    normal = np.array([-x / 5, 0, 1]) / math.hypot(x / 5, 1)
+    point = np.array([x, 0.7, x**2 / 10]) + 0.25 * normal
+    parameters, work = np.empty(2), np.empty((10, 6))
+    gap = project(point, positions, np.arange(6), parameters, work)
+    assert gap == pytest.approx(0.25, rel=1e-12)
+    np.testing.assert_allclose(parameters, [x / 4, 0.7 / 4], rtol=1e-9)
+
+
+def test_a_point_beside_the_face_has_no_gap() -> None:
+    positions = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], float)
+    parameters, work = np.empty(2), np.empty((10, 6))
+    outside = project(np.array([3.0, 3.0, 0.1]), positions, np.arange(6), parameters, work)
+    assert outside == math.inf

@@ -1,0 +1,169 @@
+"""Contact: two blocks that act as one, but for the known give of the penalty; a narrow row."""
+
+from __future__ import annotations
+
+import numpy as np
+from actuators import default_elastomer, default_paper, mesh_of_design, whole_of
+from closed_forms import YEOH
+from figure import Figure
+from scipy.optimize import brentq
+from solving import elastomer, held, solid_of, solve
+
+from pagd.actuation import Actuation, ActuationResult, free_actuation
+from pagd.design import Design
+from pagd.fem.contact import ContactLaw, FaceContact
+from pagd.fem.contact_kernels import pressure_law
+from pagd.materials import Elastomer
+from pagd.mesh.primitives import box
+from pagd.mesh.types import Mesh
+from pagd.metrics import energy_balance, work_of_pressure
+
+#: Thin walls 1 mm apart, which touch at a few kPa.
+NARROW = Design(
+    L=7, W=14, H=13, t=1.5, t_n=1, t_h=2, t_ab=1.2, t_b=2.5, N=3, theta=0, alpha=0
+)  # fmt: skip
+
+SIDE, HEIGHT, GAP, PRESSED = 4.0, 3.0, 0.1, 0.4
+
+
+def pair() -> Mesh:
+    """Two blocks one above the other, of meshes that do not match, a gap between them."""
+    lower, upper = box((SIDE, SIDE, HEIGHT), (2, 2, 2)), box((SIDE, SIDE, HEIGHT), (3, 3, 2))
+    raised = upper.points + np.array([0.0, 0.0, HEIGHT + GAP])
+    offset = len(lower.points)
+    surfaces = {
+        "x0": np.vstack([lower.surfaces["x0"], upper.surfaces["x0"] + offset]),
+        "y0": np.vstack([lower.surfaces["y0"], upper.surfaces["y0"] + offset]),
+        "bottom": lower.surfaces["z0"],
+        "master": lower.surfaces["z1"],
+        "slave": upper.surfaces["z0"] + offset,
+        "top": upper.surfaces["z1"] + offset,
+    }
+    return Mesh(
+        points=np.vstack([lower.points, raised]),
+        tets=np.vstack([lower.tets, upper.tets + offset]),
+        surfaces=surfaces,
+    )
+
+
+def two_blocks() -> list[Figure]:
+    """The upper block is moved down by 0.4 mm: closes the gap of 0.1 mm, compresses both.
+
+    Expected, in each block: uniaxial stress at the stretch that is left, with the gap that the
+    penalty keeps open at that pressure.
+    """
+    mesh, material, law = pair(), elastomer(YEOH), ContactLaw(stiffness=20.0, width=0.04)
+    fixed = held(mesh, x0="x", y0="y", bottom="z", top="z")
+    top = mesh.nodes_of("top")
+
+    def pressed(load: float) -> np.ndarray:
+        field = np.zeros(mesh.points.shape)
+        field[top, 2] = -load * PRESSED
+        return field
+
+    contact = FaceContact(mesh.points, mesh.surfaces["slave"], mesh.surfaces["master"], law)
+    (solved,) = solve(
+        mesh.points, [solid_of(mesh, material), contact], fixed, [1.0], pressed, first=0.1
+    )
+    force, gap = _expected(material, law)
+    return [
+        Figure(
+            name="two blocks pressed together: force",
+            reference=force,
+            value=float(-solved.reactions[top, 2].sum()),
+            tolerance=5e-3,
+            unit="N",
+        ),
+        Figure(
+            name="two blocks pressed together: force on the lower one",
+            reference=force,
+            value=float(solved.reactions[mesh.nodes_of("bottom"), 2].sum()),
+            tolerance=5e-3,
+            unit="N",
+        ),
+        Figure(
+            name="two blocks pressed together: smallest gap",
+            reference=gap,
+            value=contact.smallest_gap,
+            tolerance=0.02,
+            unit="mm",
+            scale=law.width,
+        ),
+    ]
+
+
+def _expected(material: Elastomer, law: ContactLaw) -> tuple[float, float]:
+    """Force in N and gap in mm; the slave's undeformed area carries the pressure."""
+    c10, c20 = YEOH
+
+    def nominal(stretch: float) -> float:
+        # Incompressible to within the 0.1 % that ν = 0.499 leaves.
+        excess = stretch**2 + 2 / stretch - 3
+        return -2 * (c10 + 2 * c20 * excess) * (stretch - 1 / stretch**2)
+
+    def unbalanced(gap: float) -> float:
+        stretch = 1 - (PRESSED - GAP + gap) / (2 * HEIGHT)
+        return nominal(stretch) + pressure_law(gap, law.stiffness, law.width)[1]
+
+    gap = float(brentq(unbalanced, -law.width, law.width))
+    return -pressure_law(gap, law.stiffness, law.width)[1] * SIDE**2, gap
+
+
+def narrow_row() -> list[Figure]:
+    """Three chambers 1 mm apart at 15 kPa: their walls touch, and do not go through each other.
+
+    The half model has the motion of the whole one; contact stores next to nothing, so that the
+    energy balance holds as without it; the row bends by more, since the walls push.
+    """
+    half = mesh_of_design(NARROW, 4.0, half=True)
+    found = {
+        "half": _actuated(half, contact=True),
+        "whole": _actuated(whole_of(half), contact=True),
+        "free": _actuated(half, contact=False),
+    }
+    lowest = {
+        name: float(result.states[-1].displacement[: len(half.points), 2].min())
+        for name, result in found.items()
+    }
+    touching = found["half"]
+    balance = energy_balance(
+        work_of_pressure(touching.history["pressure_kPa"], touching.history["cavity_volume_mm3"]),
+        touching.history["stored_energy_mJ"],
+    )[-1]
+    return [
+        Figure(
+            name="narrow row: penetration by the gap",
+            reference=0.0,
+            value=min(0.0, float(touching.figures["smallest_gap_mm"])) / NARROW.t_n,
+            tolerance=0.02,
+            scale=1.0,
+        ),
+        Figure(
+            name="narrow row: half against whole model, lowest displacement",
+            reference=lowest["whole"],
+            value=lowest["half"],
+            tolerance=1e-5,
+            unit="mm",
+        ),
+        Figure(
+            name="narrow row: energy balance",
+            reference=0.0,
+            value=float(balance),
+            tolerance=5e-3,
+            scale=1.0,
+        ),
+        Figure(
+            name="narrow row: share of the motion that contact adds, at least 5 %",
+            reference=0.5,
+            value=1 - lowest["free"] / lowest["half"],
+            tolerance=0.45,
+            scale=1.0,
+        ),
+    ]
+
+
+def _actuated(mesh: Mesh, *, contact: bool) -> ActuationResult:
+    settings = Actuation(maximum_pressure_kPa=15.0, tolerance_mm=1e-3, contact=contact)
+    result = free_actuation(mesh, default_elastomer(), default_paper(), settings)
+    assert result.reason is None, result.reason
+    return result
