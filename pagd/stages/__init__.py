@@ -9,7 +9,7 @@ leaves a folder too, with the reason in the record; the stages after it pass tha
 STAGE_VERSIONS = {
     "dataset": 1,
     "embedding": 1,
-    "generate": 1,
+    "generate": 2,
     "diversity": 1,
     "selection": 1,
     "geometry": 1,

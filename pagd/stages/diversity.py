@@ -102,7 +102,7 @@ def run(
     settings = config["diversity"]
     space = load_embedding(dataset, embedding, threads=threads)
     method = read_record(embedding).configuration["embedding"]
-    frame, record = load_generated(dataset, generated)
+    frame, record = load_generated(dataset, generated, embedding)
     config = part(config, "diversity") | _made_with(record, generated)
     own = config["generator"]["method"]
     _check(config, method, len(space.designs))

@@ -23,7 +23,7 @@ from pagd.record import Meter, Record
 from pagd.stages import dataset as dataset_stage
 from pagd.stages import embedding as embedding_stage
 from pagd.stages.dataset import DESIGNS_NAME, digest_of
-from pagd.stages.embedding import load_embedding
+from pagd.stages.embedding import POINTS_NAME, load_embedding
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import GENERATED
@@ -78,7 +78,11 @@ def run(
             frame = _measured(generated, space)
         write_frame(folder / DESIGNS_NAME, frame, GENERATED)
         _write_mixture(generator, folder)
-        outcome.figures |= generated.report | _means(frame) | {"dataset_sha256": digest_of(data)}
+        digests = {
+            "dataset_sha256": digest_of(data),
+            "embedding_sha256": digest_of(plane / POINTS_NAME),
+        }
+        outcome.figures |= generated.report | _means(frame) | digests
 
     return run_stage(
         "generate",

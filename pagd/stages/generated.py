@@ -10,17 +10,21 @@ from pagd.dataset import read_frame
 from pagd.errors import InputError
 from pagd.record import Record, read_record
 from pagd.stages.dataset import DESIGNS_NAME, digest_of
+from pagd.stages.embedding import POINTS_NAME
 
 __all__ = ["load_generated"]
 
 
-def load_generated(dataset: Path, generated: Path) -> tuple[pd.DataFrame, Record]:
+def load_generated(
+    dataset: Path, generated: Path, embedding: Path | None = None
+) -> tuple[pd.DataFrame, Record]:
     """Read generated designs and their record, from the folder of the stage generate.
 
     Raises
     ------
     InputError
-        If it is the folder of another stage or none, or made of another data set.
+        If it is the folder of another stage or none, or made of another data set, or, where an
+        embedding is given, drawn in another one.
     """
     record = read_record(generated)
     if record.stage != "generate":
@@ -32,5 +36,10 @@ def load_generated(dataset: Path, generated: Path) -> tuple[pd.DataFrame, Record
         raise InputError(
             f"generated = {generated} must be made of the data set {dataset}, "
             "but was made of another one."
+        )
+    if embedding and record.figures.get("embedding_sha256") != digest_of(embedding / POINTS_NAME):
+        raise InputError(
+            f"generated = {generated} must be drawn in the embedding {embedding}, "
+            "but was drawn in another one."
         )
     return read_frame(generated / DESIGNS_NAME), record

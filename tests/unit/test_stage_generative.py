@@ -122,6 +122,19 @@ def test_generated_designs_must_be_those_of_the_data_set(
         assert not (tmp_path / "out").exists()
 
 
+def test_designs_are_compared_in_the_plane_they_were_drawn_in(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, other = study / "dataset", tmp_path / "other"
+    wider = json.dumps({"embedding": {"method": "pca", "dimensions": 3}})
+    embed = ("embed", "--dataset", data, "--out", other, "--config", wider)
+    assert main([*map(str, embed)]) == 0
+    made = ("--dataset", data, "--embedding", other, "--generated", study / "generated")
+    assert run("diversity", *made, "--out", tmp_path / "out") == 2
+    assert "must be drawn in the embedding" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_an_embedding_is_the_folder_of_its_stage(
     study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
