@@ -24,6 +24,8 @@ FloatArray = NDArray[np.float64]
 # A generator that gives no usable design in so many proposals on end is given up.
 _HOPELESS = 10_000
 _SMALLEST_ROUND = 100
+# Designs that differ, by 0.01 mm at least, are farther apart than this.
+_EQUAL = 1e-6
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -108,7 +110,6 @@ class _Sieve:
     taken: list[Design] = field(default_factory=list)
     points: list[FloatArray] = field(default_factory=list)
     components: list[int] = field(default_factory=list)
-    known: set[Design] = field(default_factory=set)
     seen: set[Design] = field(default_factory=set)
     tally: Counter[str] = field(default_factory=Counter)
     in_vain: int = 0
@@ -120,8 +121,6 @@ class _Sieve:
     tree: KDTree = field(init=False)
 
     def __post_init__(self) -> None:
-        if not self.generator.copies_training:
-            self.known = set(designs_of(self.training))
         self.encoder = Encoder().fit(self.training)
         self.tree = KDTree(self.encoder.transform(self.training))
 
@@ -156,11 +155,11 @@ class _Sieve:
 
     def _is_new(self, designs: list[Design]) -> NDArray[np.bool_]:
         """Whether each design is at least so far from every training design as is asked for."""
-        if self.generator.copies_training or self.least_novelty == 0:
+        if self.generator.copies_training:
             return np.ones(len(designs), dtype=np.bool_)
         frame = frame_of(designs, map(str, range(len(designs))), "generated")
         distances, _ = self.tree.query(self.encoder.transform(frame))
-        return np.asarray(distances >= self.least_novelty)
+        return np.asarray(distances >= max(self.least_novelty, _EQUAL))
 
     def _refusal(self, design: Design, is_new: bool) -> str | None:
         if self.mode not in (None, design.mode):
@@ -169,7 +168,7 @@ class _Sieve:
         if keys:
             self.broken.update(keys)
             return "invalid"
-        if not is_new or design in self.known:
+        if not is_new:
             return "copies_of_training"
         return "duplicates" if design in self.seen else None
 

@@ -12,12 +12,13 @@ import pandas as pd
 from pagd.catalogue import NamedDesign, read_designs
 from pagd.config import known_tables, part
 from pagd.dataset import make_dataset, read_frame, write_frame
+from pagd.errors import InputError
 from pagd.files import must_exist
-from pagd.record import Meter, Record
+from pagd.record import Meter, Record, read_record
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 
-__all__ = ["DESIGNS_NAME", "digest_of", "load_dataset", "run"]
+__all__ = ["DESIGNS_NAME", "digest_of", "load_dataset", "record_of", "run"]
 
 DESIGNS_NAME = "designs.parquet"
 
@@ -72,6 +73,37 @@ def digest_of(dataset: Path) -> str:
         If there is no such file.
     """
     return _digest(_file(dataset))
+
+
+def record_of(name: str, stage: str, folder: Path, dataset: Path) -> Record:
+    """Return the record of a stage that was made of a data set.
+
+    Parameters
+    ----------
+    name
+        What the folder is called in the message of an error.
+    stage
+        The stage it must be of.
+    folder, dataset
+        Its folder, and that of the data set.
+
+    Raises
+    ------
+    InputError
+        If the folder is of another stage, or made of another data set.
+    """
+    record = read_record(folder)
+    if record.stage != stage:
+        raise InputError(
+            f"{name} = {folder} must be a folder of the stage {stage}, "
+            f"but is one of the stage {record.stage}."
+        )
+    if record.figures.get("dataset_sha256") != digest_of(dataset):
+        raise InputError(
+            f"{name} = {folder} must be made of the data set {dataset}, "
+            "but was made of another one."
+        )
+    return record
 
 
 def _known(config: Mapping[str, Any]) -> list[NamedDesign]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -235,9 +234,7 @@ class _PlaneOfFew:
         """Return the novelty over seeds: the configured generator, plain EM, random designs."""
         settings = self.config["diversity"]
         seeds = range(settings["seed"], settings["seed"] + settings["plane_seeds"])
-        rows = plane_novelty_over_seeds(self._one, seeds).rows()
-        # The spread over one seed is not a number, for which JSON has no word.
-        return [{key: _finite(value) for key, value in row.items()} for row in rows]
+        return plane_novelty_over_seeds(self._one, seeds).rows()
 
     def _one(self, seed: int) -> tuple[FloatArray, dict[str, FloatArray]]:
         rng = np.random.default_rng(seed)
@@ -250,10 +247,6 @@ class _PlaneOfFew:
             name: space.transform(each.designs) if each.points is None else each.points
             for name, each in drawn.items()
         }
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _write(found: Comparison, folder: Path, own: str) -> None:

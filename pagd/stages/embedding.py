@@ -14,8 +14,8 @@ from pagd.config import part
 from pagd.embedding import Embedding, make_embedding
 from pagd.embedding.quality import quality_of
 from pagd.errors import InputError
-from pagd.record import Meter, Record, read_record
-from pagd.stages.dataset import digest_of, load_dataset
+from pagd.record import Meter, Record
+from pagd.stages.dataset import digest_of, load_dataset, record_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import Column, read_table, write_table
 
@@ -78,17 +78,7 @@ def load_embedding(dataset: Path, embedding: Path, *, threads: int = 1) -> Embed
     InputError
         If there is none, or it is that of another data set or stage.
     """
-    record = read_record(embedding)
-    if record.stage != "embedding":
-        raise InputError(
-            f"embedding = {embedding} must be a folder of the stage embedding, "
-            f"but is one of the stage {record.stage}."
-        )
-    if record.figures.get("dataset_sha256") != digest_of(dataset):
-        raise InputError(
-            f"embedding = {embedding} must be made of the data set {dataset}, "
-            "but was made of another one."
-        )
+    record = record_of("embedding", "embedding", embedding, dataset)
     columns = read_table(embedding / POINTS_NAME)
     points = np.column_stack([values for name, values in columns.items() if name != "design_id"])
     made = make_embedding(record.configuration["embedding"], threads)

@@ -8,8 +8,8 @@ import pandas as pd
 
 from pagd.dataset import read_frame
 from pagd.errors import InputError
-from pagd.record import Record, read_record
-from pagd.stages.dataset import DESIGNS_NAME, digest_of
+from pagd.record import Record
+from pagd.stages.dataset import DESIGNS_NAME, digest_of, record_of
 from pagd.stages.embedding import POINTS_NAME
 
 __all__ = ["load_generated"]
@@ -26,17 +26,7 @@ def load_generated(
         If it is the folder of another stage or none, or made of another data set, or, where an
         embedding is given, drawn in another one.
     """
-    record = read_record(generated)
-    if record.stage != "generate":
-        raise InputError(
-            f"generated = {generated} must be a folder of the stage generate, "
-            f"but is one of the stage {record.stage}."
-        )
-    if record.figures.get("dataset_sha256") != digest_of(dataset):
-        raise InputError(
-            f"generated = {generated} must be made of the data set {dataset}, "
-            "but was made of another one."
-        )
+    record = record_of("generated", "generate", generated, dataset)
     if embedding and record.figures.get("embedding_sha256") != digest_of(embedding / POINTS_NAME):
         raise InputError(
             f"generated = {generated} must be drawn in the embedding {embedding}, "

@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import functools
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from pagd.catalogue import read_designs
 from pagd.dataset.frame import frame_of
 from pagd.dataset.sampling import sample_designs
-from pagd.design import Design, GeometryRules
+from pagd.design import GeometryRules
 from pagd.embedding.tsne import TSNE
 
-TABLE2_MIXED = Design(
-    L=8.01,
-    W=15.12,
-    H=12.98,
-    t=1.49,
-    t_n=2.8,
-    t_h=4.07,
-    t_ab=2.05,
-    t_b=1.97,
-    N=12,
-    theta=27.2,
-    alpha=0.5,
-)
+TABLE2 = Path(__file__).parents[2] / "config" / "table2.csv"
+TABLE2_MIXED = read_designs({"table2": str(TABLE2)})["mixed"].design
 
 
 @functools.cache

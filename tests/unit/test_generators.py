@@ -15,6 +15,7 @@ from pagd.dataset.frame import DEPENDENT, INDEPENDENT, designs_of
 from pagd.design import GeometryRules, Limits, violations
 from pagd.errors import InputError
 from pagd.generators import GENERATORS, Generated, Generator, generate, make_generator
+from pagd.generators.baselines import Resampling
 
 SECTION = {"components": 3, "largest_components": 4, "bridge_share": 1 / 3, "bandwidth": None}
 RULES = GeometryRules()
@@ -95,6 +96,14 @@ def test_none_is_next_to_a_training_design(generator: Generator, generated: Gene
     else:
         assert distances.min() >= least
         assert found.report["refused"]["copies_of_training"] > 0
+
+
+def test_an_exact_copy_is_refused_without_any_least_novelty() -> None:
+    class Copying(Resampling):
+        copies_training = False
+
+    with pytest.raises(InputError, match=r"but gave 0 in .* are copies of training designs\.$"):
+        drawn(Copying().fit(plane()), least_novelty=0.0)
 
 
 def test_corrections_are_those_of_designs_that_were_looked_at(generator: Generator) -> None:

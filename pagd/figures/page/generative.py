@@ -20,7 +20,7 @@ SHOWN_ELSEWHERE: Final = ("feasibility", "bending_twist", "novelty_performance")
 # Measures below are rounding errors.
 _NOTHING: Final = 1e-9
 _OF_EMBEDDING: Final = ("embedding",)
-_OF_GENERATOR: Final = ("mixture", "modes")
+_OF_GENERATOR: Final = ("mixture",)
 # What is counted: one of it, and more.
 _WORDS: Final = {
     "table2": ("of Table 2", "of Table 2"),
