@@ -16,7 +16,7 @@ from pagd.tables import read_rows, units
 
 SMALL = {
     "dataset": {"size": 120},
-    "embedding": {"method": "pca"},
+    "embedding": {"method": "pca", "dimensions": 2},
     "generator": {"designs": 30, "largest_components": 2},
     "diversity": {
         "plane_designs": 40,
@@ -48,6 +48,25 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     selection = ("--dataset", data, "--generated", new, "--out", root / "selection")
     assert run("select", *selection) == 0
     return root
+
+
+def test_all_principal_components_have_an_exact_way_back(study: Path, tmp_path: Path) -> None:
+    """The default of pca, from the embedding to the selection."""
+    data, plane, new = study / "dataset", tmp_path / "embedding", tmp_path / "generated"
+    config = ("--config", json.dumps(SMALL | {"embedding": {"method": "pca"}}))
+    made = ("--dataset", data, "--embedding", plane)
+    steps: tuple[tuple[object, ...], ...] = (
+        ("embed", "--dataset", data, "--out", plane),
+        ("generate", *made, "--out", new),
+        ("diversity", *made, "--generated", new, "--out", tmp_path / "diversity"),
+        ("select", "--dataset", data, "--generated", new, "--out", tmp_path / "selection"),
+    )
+    for step in steps:
+        assert main([*map(str, step), *config]) == 0
+    figures = read_record(plane).figures
+    assert figures["dimensions"] > 10
+    assert figures["round_trip_error"] == 0
+    assert read_record(new).figures["designs"] == 30
 
 
 def test_points_are_those_of_the_data_set(study: Path) -> None:
