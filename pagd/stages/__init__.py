@@ -20,5 +20,5 @@ STAGE_VERSIONS = {
     "figures": 2,
     "generative_figures": 1,
     "summary": 2,
-    "report": 2,
+    "report": 3,
 }

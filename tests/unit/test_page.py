@@ -151,6 +151,18 @@ def test_page_tells_of_every_design(page):
     assert titles_of(text) == expected
 
 
+@pytest.mark.parametrize(("contact", "word"), [(True, "on"), (False, "off")])
+def test_page_tells_whether_chambers_could_touch(designs, tmp_path, contact, word):
+    settings = {"solve": {"contact": contact, "maximum_pressure_kPa": 50.0}}
+    made = dataclasses.replace(record("d", "solve"), configuration=settings)
+    (tmp_path / "d" / "solve").mkdir(parents=True)
+    write_record(made, tmp_path / "d" / "solve")
+    write_page([tmp_path / "d"], tmp_path / "index.html")
+    text = re.sub("<.*?>", " ", (tmp_path / "index.html").read_text(encoding="utf-8")[:20000])
+    assert re.search(rf"contact between chambers\s+{word}\b", text)
+    assert re.search(r"pressure up to\s+50 kPa", text)
+
+
 def test_page_of_failed_designs_only(designs, tmp_path):
     write_page([designs[2], tmp_path / "never-run"], tmp_path / "index.html")
     text = (tmp_path / "index.html").read_text(encoding="utf-8")

@@ -38,6 +38,7 @@ def what_was_run(
                     ("pressure up to", _values(settings, "solve", "maximum_pressure_kPa", "kPa")),
                     ("mesh size", _values(settings, "mesh", "size_mm", "mm")),
                     ("element", _values(settings, "solve", "element")),
+                    ("contact between chambers", _values(settings, "solve", "contact")),
                     ("pagd", _versions(records, "pagd")),
                 ]
             ),
@@ -84,9 +85,14 @@ def _values(settings: Iterable[Mapping[str, Any]], part: str, key: str, unit: st
     for setting in settings:
         if isinstance(setting.get(part), Mapping) and key in setting[part]:
             value = setting[part][key]
-            word = f"{value:g}" if isinstance(value, float) else str(value).replace("_", " ")
-            found[f"{word} {unit}".strip()] = True
+            found[f"{_word(value)} {unit}".strip()] = True
     return escaped(", ".join(found))
+
+
+def _word(value: Any) -> str:
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return f"{value:g}" if isinstance(value, float) else str(value).replace("_", " ")
 
 
 def _versions(records: Iterable[Record], library: str) -> str:
