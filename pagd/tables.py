@@ -16,6 +16,7 @@ from pagd.errors import InputError
 from pagd.files import must_exist, replaced_file
 
 __all__ = [
+    "BLOCKED",
     "DESIGNS",
     "GENERATED",
     "HISTORY",
@@ -85,6 +86,13 @@ HISTORY = (
     Column("stored_energy_mJ", "double", "mJ", "elastic energy of elastomer and paper"),
     Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
     Column("newton_iterations", "int32", "1", "Newton iterations of the step"),
+    Column("recorded", "bool", "", "whether the step is a recorded state: k-th true, k-th state"),
+    Column("smallest_gap_mm", "double", "mm", "gap between walls, negative: penetration"),
+)
+
+BLOCKED = (
+    *HISTORY,
+    Column("blocked_force_N", "double", "N", "force on the support, positive towards -z"),
 )
 
 TRAJECTORY = (
