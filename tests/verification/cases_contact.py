@@ -23,6 +23,7 @@ NARROW = Design(
     L=7, W=14, H=13, t=1.5, t_n=1, t_h=2, t_ab=1.2, t_b=2.5, N=3, theta=0, alpha=0
 )  # fmt: skip
 
+BLOCKS = "closed form: uniaxial compression, gap by the contact law"
 SIDE, HEIGHT, GAP, PRESSED = 4.0, 3.0, 0.1, 0.4
 
 
@@ -69,6 +70,7 @@ def two_blocks() -> list[Figure]:
     return [
         Figure(
             name="two blocks pressed together: force",
+            source=BLOCKS,
             reference=force,
             value=float(-solved.reactions[top, 2].sum()),
             tolerance=5e-3,
@@ -76,6 +78,7 @@ def two_blocks() -> list[Figure]:
         ),
         Figure(
             name="two blocks pressed together: force on the lower one",
+            source=BLOCKS,
             reference=force,
             value=float(solved.reactions[mesh.nodes_of("bottom"), 2].sum()),
             tolerance=5e-3,
@@ -83,6 +86,7 @@ def two_blocks() -> list[Figure]:
         ),
         Figure(
             name="two blocks pressed together: smallest gap",
+            source=BLOCKS,
             reference=gap,
             value=contact.smallest_gap,
             tolerance=0.02,
@@ -133,6 +137,7 @@ def narrow_row() -> list[Figure]:
     return [
         Figure(
             name="narrow row: penetration by the gap",
+            source="rule: no deeper than 2 % of the gap",
             reference=0.0,
             value=min(0.0, float(touching.figures["smallest_gap_mm"])) / NARROW.t_n,
             tolerance=0.02,
@@ -140,6 +145,7 @@ def narrow_row() -> list[Figure]:
         ),
         Figure(
             name="narrow row: half against whole model, lowest displacement",
+            source="symmetry: the whole made of two halves",
             reference=lowest["whole"],
             value=lowest["half"],
             tolerance=1e-5,
@@ -147,6 +153,7 @@ def narrow_row() -> list[Figure]:
         ),
         Figure(
             name="narrow row: energy balance",
+            source="identity: a conservative load stores its work",
             reference=0.0,
             value=float(balance),
             tolerance=5e-3,
@@ -154,6 +161,7 @@ def narrow_row() -> list[Figure]:
         ),
         Figure(
             name="narrow row: share of the motion that contact adds, at least 5 %",
+            source="bound: between 5 % and 95 %",
             reference=0.5,
             value=1 - lowest["free"] / lowest["half"],
             tolerance=0.45,

@@ -41,6 +41,7 @@ class Sphere:
     """An octant, 4 layers of 4 × 4 × 3 curved elements."""
 
     name = "sphere"
+    source = "closed form: thick sphere, Ogden 1984, by quadrature"
     axis_weights = (1 / 3, 1 / 3, 1 / 3)
     symmetry = {"x0": "x", "y0": "y", "z0": "z"}  # noqa: RUF012
     exact_pressure = staticmethod(sphere_pressure)
@@ -58,6 +59,7 @@ class Cylinder:
     """A quarter, 4 × 6 × 1 cells of curved elements."""
 
     name = "cylinder"
+    source = "closed form: thick cylinder in plane strain, by quadrature"
     axis_weights = (1 / 2, 1 / 2, 0.0)
     symmetry = {"x0": "x", "y0": "y", "z0": "z", "z1": "z"}  # noqa: RUF012
     exact_pressure = staticmethod(cylinder_pressure)
@@ -127,6 +129,7 @@ def moved_wall(body: Body, material: str, element: str = "taylor_hood") -> list[
     return [
         Figure(
             name=f"{body.name}, {material}, {element}: pressure at λa = {stretch}",
+            source=body.source,
             reference=1e3 * body.exact_pressure(coefficients, INNER, OUTER, stretch),
             value=1e3 * value,
             tolerance=0.003,
@@ -142,6 +145,7 @@ def follower(body: Body, material: str) -> list[Figure]:
     return [
         Figure(
             name=f"{body.name}, {material}: λa − 1 under the pressure of λa = {stretch}",
+            source=body.source,
             reference=stretch - 1,
             value=value - 1,
             tolerance=0.003,

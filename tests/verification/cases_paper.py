@@ -168,6 +168,7 @@ def circle() -> list[Figure]:
         figures += [
             Figure(
                 name=name + "distance of the tip from the arc's end / length",
+                source="closed form: circular arc under an end moment",
                 reference=0.0,
                 value=distance,
                 tolerance=tolerance,
@@ -175,6 +176,7 @@ def circle() -> list[Figure]:
             ),
             Figure(
                 name=name + "energy of the membrane / of bending",
+                source="closed form: pure bending does not stretch",
                 reference=0.0,
                 value=share,
                 tolerance=0.005,
@@ -200,7 +202,15 @@ def elastica(load: float = 5.0) -> list[Figure]:
         found = end_force(size, load)
         for axis, reference, value in zip("xz", (x, z), found, strict=True):
             name = f"paper strip, end force, {size:g} mm faces: tip {axis} / length"
-            figures.append(Figure(name=name, reference=reference, value=value, tolerance=tolerance))
+            figures.append(
+                Figure(
+                    name=name,
+                    source="elastica, by quadrature (checked by elliptic integrals)",
+                    reference=reference,
+                    value=value,
+                    tolerance=tolerance,
+                )
+            )
     return figures
 
 

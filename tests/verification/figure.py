@@ -1,9 +1,10 @@
-"""One figure of the verification: what was expected, what was found, what may differ."""
+"""One row of the verification: what was expected, what was found, what may differ."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -14,6 +15,9 @@ class Figure:
     ----------
     name
         What was computed: body, material, mesh, load.
+    source
+        Where the reference comes from: a formula by its name, a paper, another program with its
+        version, an identity.
     reference, value
         In the unit given.
     tolerance
@@ -25,6 +29,7 @@ class Figure:
     """
 
     name: str
+    source: str
     reference: float
     value: float
     tolerance: float
@@ -37,28 +42,70 @@ class Figure:
         return (self.value - self.reference) / abs(self.scale or self.reference)
 
     @property
-    def holds(self) -> bool:
+    def passes(self) -> bool:
         """Whether the error is within the tolerance; a value that is no number is not."""
         return abs(self.error) <= self.tolerance
 
     def __str__(self) -> str:
-        error, allowed = (_percent(value) for value in (self.error, self.tolerance))
+        error, allowed = (percent(value) for value in (self.error, self.tolerance))
         return (
             f"{self.name}: {self.value:.6g} {self.unit}".rstrip()
             + f", expected {self.reference:.6g} (error {error}, allowed {allowed})"
         )
 
 
-def _percent(value: float) -> str:
-    return f"{value:.2%}" if abs(value) >= 1e-4 else f"{value:.0e}"
+def percent(value: float) -> str:
+    """A share in percent, in scientific notation where it is tiny."""
+    return f"{value:.2%}" if value == 0 or abs(value) >= 1e-4 else f"{value:.0e}"
 
 
-Case = Callable[[], list[Figure]]
+class Group(StrEnum):
+    """What a case is about, in the order of the page."""
+
+    solids = "Elements and material"
+    rates = "Rates of convergence"
+    paper = "Paper"
+    pressure = "Pressure and energy"
+    contact = "Contact"
+    supports = "Supports and gravity"
+    symmetry = "Symmetries"
+    programs = "Other programs"
+    meshes = "Mesh convergence of the examples"
+
+
+Rows = Callable[[], list[Figure]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """Rows that are computed together.
+
+    Attributes
+    ----------
+    rows
+        Computes them; its docstring says what is compared, and why the tolerance is what it is.
+    group
+        Where they stand on the page.
+    costly
+        Whether they take too long for the tests.
+    program
+        A program they need; without it on the path they are left out.
+    """
+
+    rows: Rows
+    group: Group
+    costly: bool = False
+    program: str | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the function."""
+        return self.rows.__name__
 
 
 def check(figures: Iterable[Figure]) -> None:
-    """Raise AssertionError with every figure that does not hold."""
+    """Raise AssertionError with every figure that does not pass."""
     found = list(figures)
     assert found, "the case gives no figures"
-    wrong = [str(figure) for figure in found if not figure.holds]
+    wrong = [str(figure) for figure in found if not figure.passes]
     assert not wrong, "\n".join(wrong)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cases_actuators
 import pytest
-from figure import Case, check
+from figure import Rows, check
 
 
 @pytest.mark.slow
@@ -24,5 +24,5 @@ def test_element_table() -> None:
     ],
     ids=lambda case: case.__name__,
 )
-def test_actuators(case: Case) -> None:
+def test_actuators(case: Rows) -> None:
     check(case())
