@@ -32,7 +32,7 @@ from pagd.stages.embedding import check_perplexity, load_embedding
 from pagd.stages.generated import load_generated
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
-from pagd.tables import Column, write_rows
+from pagd.tables import COMPARISON, HULL_POINTS, HULLS, write_rows
 
 __all__ = ["COMPARISON_NAME", "DIVERSITY_NAME", "HULL_NAME", "run"]
 
@@ -42,31 +42,6 @@ HULL_NAME = "hull.parquet"
 POINTS_NAME = "hull_points.parquet"
 
 FloatArray = NDArray[np.float64]
-
-_COMPARISON = (
-    Column("generator", "string", "", "generator; training: the training designs themselves"),
-    Column("space", "string", "", "space in which it is measured"),
-    Column("mode", "string", "", "mode of the designs, or all"),
-    Column("metric", "string", "", "metric; diversity.json says what each is"),
-    Column("better", "string", "", "where more novelty, diversity or likeness lies"),
-    Column("value", "double", "1", "value; null: not defined"),
-    Column("low", "double", "1", "lower end of its interval; null: it has none"),
-    Column("high", "double", "1", "upper end of its interval"),
-    Column("count", "int64", "1", "designs, or seeds in the space plane_sample"),
-)
-_HULLS = (
-    Column("generator", "string", "", "generator"),
-    Column("repeat", "int64", "1", "number of the draw, from 0"),
-    Column("training", "double", "1", "area of the hull of training designs, unit square"),
-    Column("generated", "double", "1", "area of the hull of as many generated designs"),
-)
-_POINTS = (
-    Column("generator", "string", "", "generator"),
-    Column("set", "string", "", "training or generated"),
-    Column("z1", "double", "1", "first coordinate in the unit square"),
-    Column("z2", "double", "1", "second coordinate"),
-    Column("corner", "int64", "1", "place around the hull, from 0; null: within it"),
-)
 
 
 def run(
@@ -256,10 +231,10 @@ def _write(found: Comparison, folder: Path, own: str) -> None:
     rows = [{**row, "better": METRICS[row["metric"]].better} for row in found.rows]
     # The configured generator first, the yardstick last.
     rows.sort(key=lambda row: (row["generator"] != own, row["generator"] == TRAINING))
-    write_rows(folder / COMPARISON_NAME, _COMPARISON, rows)
+    write_rows(folder / COMPARISON_NAME, COMPARISON, rows)
     for name, columns, parts in (
-        (HULL_NAME, _HULLS, found.hull_areas()),
-        (POINTS_NAME, _POINTS, found.hull_points()),
+        (HULL_NAME, HULLS, found.hull_areas()),
+        (POINTS_NAME, HULL_POINTS, found.hull_points()),
     ):
         write_rows(folder / name, columns, [row for row in parts if row["generator"] == own])
 

@@ -17,7 +17,7 @@ from pagd.errors import InputError
 from pagd.record import Meter, Record
 from pagd.stages.dataset import digest_of, load_dataset, record_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
-from pagd.tables import Column, read_table, write_table
+from pagd.tables import read_table, reduced_space, write_table
 
 __all__ = ["POINTS_NAME", "check_perplexity", "load_embedding", "run"]
 
@@ -102,11 +102,5 @@ def _contiguous(points: NDArray[Any]) -> NDArray[np.float64]:
 def _write(embedding: Embedding, folder: Path) -> None:
     ids: pd.Series[str] = embedding.designs["design_id"]
     points = {f"z{i}": values for i, values in enumerate(embedding.points.T, start=1)}
-    columns = [
-        Column("design_id", "string", "", "name of the training design"),
-        *(
-            Column(name, "double", "1", f"coordinate {name[1:]} in the reduced space")
-            for name in points
-        ),
-    ]
+    columns = reduced_space(len(points))
     write_table(folder / POINTS_NAME, columns, {"design_id": ids, **points})

@@ -1,18 +1,27 @@
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 from pagd.errors import InputError
 from pagd.tables import (
+    BLOCKED,
+    CHAMBERS,
+    COMPARISON,
+    DESIGNS,
+    GENERATED,
     HISTORY,
+    MEASURES,
     PERFORMANCE,
+    STATES,
     TRAJECTORY,
     Column,
     concatenate,
     read_rows,
     read_table,
+    reduced_space,
     units,
     write_rows,
     write_table,
@@ -84,9 +93,28 @@ def test_a_broken_file_is_an_input_error(tmp_path: Path) -> None:
             read_table(tmp_path / name)
 
 
-def test_units_agree_with_the_names() -> None:
-    endings = {"kPa": "kPa", "deg": "deg", "mm": "mm", "mm3": "mm³", "mJ": "mJ", "s": "s", "N": "N"}
-    for column in (*HISTORY, *TRAJECTORY, *PERFORMANCE):
-        ending = column.name.rsplit("_", 1)[-1]
-        if "_" in column.name and ending in endings:
-            assert column.unit == endings[ending], column.name
+ENDINGS = {"kPa": "kPa", "deg": "deg", "mm": "mm", "mm3": "mm³", "mJ": "mJ", "s": "s", "N": "N"}
+DECLARED = (BLOCKED, CHAMBERS, HISTORY, MEASURES, PERFORMANCE, STATES, TRAJECTORY)
+
+
+@pytest.mark.parametrize("columns", DECLARED)
+def test_units_agree_with_the_names(columns: tuple[Column, ...]) -> None:
+    for column in columns:
+        words = column.name.split("_")
+        if len(words) > 1 and words[-1] in ENDINGS:
+            prefix = "1/" if words[-2] == "per" else ""
+            assert column.unit == prefix + ENDINGS[words[-1]], column.name
+
+
+@pytest.mark.parametrize("columns", (*DECLARED, DESIGNS, GENERATED, COMPARISON))
+def test_every_column_is_told_once_with_a_type_and_a_unit(columns: tuple[Column, ...]) -> None:
+    assert len({column.name for column in columns}) == len(columns)
+    for column in columns:
+        assert column.description
+        number = pa.types.is_integer(kind := pa.type_for_alias(column.type))
+        number = number or pa.types.is_floating(kind)
+        assert bool(column.unit) == number, column.name
+
+
+def test_the_reduced_space_has_a_column_a_dimension() -> None:
+    assert [column.name for column in reduced_space(3)] == ["design_id", "z1", "z2", "z3"]
