@@ -122,7 +122,7 @@ def _add_mesh_options(command: argparse.ArgumentParser) -> None:
 
 def _add_solve(commands: Any) -> None:
     solve = add_command(
-        commands, "solve", "solve", "free actuation: pressure from 0 to the maximum"
+        commands, "solve", "solve", "free actuation and blocked force: pressure from 0 up"
     )
     solve.add_argument(
         "--mesh",
@@ -154,6 +154,7 @@ def _add_solve_options(command: argparse.ArgumentParser) -> None:
         help="pressure at the end",
     )
     override(group, "solve", "element", str, "taylor_hood or element_pressure")
+    override(group, "solve", "blocked_force", str, "what holds the tip: edge, plate or none")
     group.add_argument(
         "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
     )

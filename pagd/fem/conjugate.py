@@ -38,13 +38,22 @@ class ConjugatePath:
     control
         How the error of a first guess chooses the next step; its loads do not matter here.
     smallest_share
-        A step below this share of the first one is the end.
+        A step below this share of the first one is the end, …
+    most_steps
+        … and so are more steps than this.
     """
 
-    def __init__(self, newton: Newton, control: StepControl, smallest_share: float = 1e-3) -> None:
+    def __init__(
+        self,
+        newton: Newton,
+        control: StepControl,
+        smallest_share: float = 1e-3,
+        most_steps: int = 1000,
+    ) -> None:
         if newton.load_term is None:
             raise ValueError("to step by the conjugate of the load, its term is needed")
         self._newton, self._control, self._smallest = newton, control, smallest_share
+        self._most_steps = most_steps
         self._term: LoadTerm = newton.load_term
 
     def follow(
@@ -58,7 +67,10 @@ class ConjugatePath:
         control, wanted, path = self._control, list(loads), replace(path, failure="")
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
         step = first = points[-1].conjugate - points[-2].conjugate
+        end = path.steps + self._most_steps
         while wanted:
+            if path.steps >= end:
+                return replace(path, failure=f"{self._most_steps} steps were not enough")
             taken, count = step, len(points)
             result = self._try(points, points[-1].conjugate + step)
             correction = result.corrections[0] if result.corrections else math.inf

@@ -138,14 +138,17 @@ class Continuation:
         #: The last states of the path, as many as a first guess is made of.
         self.states: list[State] = []
 
-    def follow(self, loads: Sequence[float], observe: Observer) -> LoadPath:
-        """Raise the load from rest through each of ``loads``, which must increase.
+    def follow(
+        self, loads: Sequence[float], observe: Observer, start: State | None = None
+    ) -> LoadPath:
+        """Raise the load through each of ``loads``, which must increase.
 
-        ``observe`` gets every converged step and may return a reason to stop.
+        From ``start``, an equilibrium, or from rest. ``observe`` gets every converged step and may
+        return a reason to stop.
         """
         control = self._control
         path = LoadPath(0.0, 0, 0, 0)
-        states = self.states = [self._newton.assembly.at_rest()]
+        states = self.states = [start or self._newton.assembly.at_rest()]
         step, rejections = control.first, 0
         for target in loads:
             while states[-1].load < target:

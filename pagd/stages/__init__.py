@@ -15,7 +15,7 @@ STAGE_VERSIONS = {
     "geometry": 1,
     "repair": 1,
     "mesh": 1,
-    "solve": 2,
+    "solve": 3,
     "metrics": 1,
     "figures": 2,
     "generative_figures": 1,

@@ -1,37 +1,51 @@
-"""Stage 4: free actuation, pressure from 0 to the maximum."""
+"""Stage 4: free actuation and blocked force, pressure from 0 to the maximum."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pagd.actuation import Actuation, ActuationResult, Progress, Stop, free_actuation
+from pagd.actuation import (
+    Actuation,
+    ActuationResult,
+    Body,
+    Progress,
+    blocked_force,
+    free_actuation,
+)
 from pagd.config import material_file
 from pagd.documents import read_document
-from pagd.errors import InputError, Status
+from pagd.errors import InputError
 from pagd.materials import Elastomer, Sheet, Use, elastomer, find_material, sheet
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
-from pagd.metrics import measure, work_of_pressure
+from pagd.metrics import work_of_pressure
 from pagd.record import Meter, Record, read_record
+from pagd.self_collision import self_collision_stop
 from pagd.stages.mesh import identity, mesh_file, name_of
-from pagd.stages.sections import even_stations_of, sections_of
 from pagd.stages.stage import Outcome, run_stage
+from pagd.stages.stops import bending_stop, first_of
 from pagd.states import States, write_states
-from pagd.tables import HISTORY, write_table
+from pagd.tables import BLOCKED, HISTORY, Column, write_table
 
-__all__ = ["HISTORY_NAME", "STATES_NAME", "Materials", "materials_of", "run"]
+__all__ = [
+    "BLOCKED_NAME",
+    "BLOCKED_STATES_NAME",
+    "HISTORY_NAME",
+    "STATES_NAME",
+    "Materials",
+    "materials_of",
+    "run",
+]
 
 STATES_NAME = "states.parquet"
 HISTORY_NAME = "history.parquet"
-
-# Sections for the limit of bending: enough that no piece between two turns by 180°.
-_SECTIONS = 13
+BLOCKED_STATES_NAME = "blocked_states.parquet"
+BLOCKED_NAME = "blocked_force.parquet"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +90,11 @@ def run(
     vtu: bool = False,
     progress: Progress | None = None,
 ) -> Record:
-    """Solve an actuator: states.parquet, history.parquet, and VTU files on request.
+    """Solve an actuator: free, then with its tip held unless the configuration says otherwise.
+
+    Leaves states.parquet and history.parquet, blocked_states.parquet and blocked_force.parquet,
+    and VTU files of the free actuation on request. The status is that of the free actuation; how
+    the other analysis ended is in the figures.
 
     Parameters
     ----------
@@ -99,22 +117,26 @@ def run(
     file = mesh_file(mesh)
     settings = dict(config["solve"])
     limit = settings.pop("bending_limit_deg")
+    actuation = Actuation(**settings | {"gravity_m_s2": tuple(settings["gravity_m_s2"])})
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("read"):
-            body = read_msh(file)
+            read = read_msh(file)
+            body = Body(read, materials.elastomer, materials.paper, actuation)
+            collision = self_collision_stop(read)
+        both = materials.elastomer, materials.paper, actuation
         with meter.part("solve"):
-            result = free_actuation(
-                body,
-                materials.elastomer,
-                materials.paper,
-                Actuation(**settings),
-                stop=_bending_stop(body, limit),
-                progress=progress,
-            )
-        outcome.figures |= _figures(result) | identity(body)
+            stop = first_of(bending_stop(read, limit), collision)
+            result = free_actuation(body, *both, stop, progress)
+        outcome.figures |= _figures(result) | identity(read)
         outcome.end(result.status, result.reason)
-        _write(body, result, folder, vtu=vtu)
+        _write_free(read, result, folder, vtu=vtu)
+        if actuation.blocked_force == "none":
+            return
+        with meter.part("blocked_force"):
+            held = blocked_force(body, *both, collision, progress)
+        outcome.figures["blocked_force"] = _ending(held)
+        _write(held, folder / BLOCKED_STATES_NAME, folder / BLOCKED_NAME, BLOCKED)
 
     return run_stage(
         "solve",
@@ -141,23 +163,6 @@ def _entry(use: Use, named: str, file: Path) -> tuple[str, dict[str, Any]]:
     return str(entry.pop("name")), entry
 
 
-def _bending_stop(mesh: Mesh, limit_deg: float) -> Stop | None:
-    """Return what ends the analysis where the tip has bent beyond the limit."""
-    if "paper" not in mesh.surfaces:
-        return None
-    sections = sections_of(mesh, even_stations_of(mesh, _SECTIONS))
-
-    def stop(pressure_kPa: float, moved: NDArray[np.float64]) -> tuple[Status, str] | None:
-        trajectory = measure(sections, np.array([pressure_kPa]), moved[None])
-        bending = abs(float(trajectory.bending_deg[-1, -1]))
-        if bending <= limit_deg:
-            return None
-        reason = f"At {pressure_kPa:.4g} kPa it bends by {bending:.1f}°, over {limit_deg:g}°."
-        return Status.bending_limit, reason
-
-    return stop
-
-
 def _figures(result: ActuationResult) -> dict[str, Any]:
     states = result.states
     recorded = {
@@ -168,19 +173,47 @@ def _figures(result: ActuationResult) -> dict[str, Any]:
     return {**result.figures, "recorded": recorded}
 
 
-def _write(mesh: Mesh, result: ActuationResult, folder: Path, *, vtu: bool) -> None:
+#: What the record says of the analysis with the tip held, beside how it ended.
+_HELD_FIGURES = (
+    "variant",
+    "blocked_force_N",
+    "pressure_kPa",
+    "newton_iterations",
+    "steps",
+    "rejected_steps",
+    "limit_points",
+    "volume_controlled_from_kPa",
+    "smallest_gap_mm",
+    "deepest_penetration_mm",
+)
+
+
+def _ending(held: ActuationResult) -> dict[str, Any]:
+    found = {key: held.figures[key] for key in _HELD_FIGURES if key in held.figures}
+    return {"status": held.status.value, "reason": held.reason, **found}
+
+
+def _write_free(mesh: Mesh, result: ActuationResult, folder: Path, *, vtu: bool) -> None:
+    states = _write(result, folder / STATES_NAME, folder / HISTORY_NAME, HISTORY)
+    if vtu:
+        from pagd.vtu import write_vtu
+
+        write_vtu(mesh, states, folder / "vtu")
+
+
+def _write(
+    result: ActuationResult, states_file: Path, history_file: Path, columns: Sequence[Column]
+) -> States:
     states = States.stacked(
         [state.pressure_kPa for state in result.states],
         [state.displacement for state in result.states],
         [state.strain for state in result.states],
     )
-    write_states(states, folder / STATES_NAME)
+    write_states(states, states_file)
     history = result.history
     work = work_of_pressure(history["pressure_kPa"], history["cavity_volume_mm3"])
     iterations = history["newton_iterations"].astype(np.int32)
-    columns = {**history, "work_mJ": work, "newton_iterations": iterations}
-    write_table(folder / HISTORY_NAME, HISTORY, columns)
-    if vtu:
-        from pagd.vtu import write_vtu
-
-        write_vtu(mesh, states, folder / "vtu")
+    write_table(
+        history_file, columns, {**history, "work_mJ": work, "newton_iterations": iterations}
+    )
+    return states

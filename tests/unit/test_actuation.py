@@ -79,6 +79,8 @@ def test_history(result: ActuationResult) -> None:
         "cavity_volume_mm3",
         "stored_energy_mJ",
         "newton_iterations",
+        "recorded",
+        "smallest_gap_mm",
     }
     assert len({len(column) for column in history.values()}) == 1
     assert (np.diff(history["pressure_kPa"]) > 0).all()
@@ -116,11 +118,11 @@ def test_paper_stiffens() -> None:
 def test_half_model_doubles_its_sums() -> None:
     """Volume and energy are those of the whole actuator."""
     half, whole = (
-        Body(block(half=True), MATERIAL, PAPER, "taylor_hood"),
-        Body(block(), MATERIAL, PAPER, "taylor_hood"),
+        Body(block(half=True), MATERIAL, PAPER),
+        Body(block(), MATERIAL, PAPER),
     )
     assert half.solid_volume == pytest.approx(whole.solid_volume)
-    volumes = [b.volume_and_energy(np.zeros(b.size), 0.0)[0] for b in (half, whole)]
+    volumes = [b.volume(np.zeros(b.size)) for b in (half, whole)]
     assert volumes == pytest.approx([36.0, 36.0])
 
 
@@ -175,16 +177,43 @@ def test_overstretched() -> None:
     assert 0 < found.figures["pressure_kPa"] < 50
 
 
-def test_not_converged_beyond_a_limit_point() -> None:
-    """A soft neo-Hookean block blows up: no equilibrium at 50 kPa."""
-    soft = elastomer("neo_hookean", C10=0.004)
-    found = free_actuation(block(), replace(soft, largest_stretch=100), PAPER)
+def test_no_step_at_all() -> None:
+    wanted = replace(SHORT, maximum_pressure_kPa=500.0, first_step_kPa=500, smallest_step_kPa=400)
+    found = free_actuation(block(), MATERIAL, PAPER, replace(wanted, recorded_step_kPa=500.0))
     assert found.status is Status.not_converged
     assert found.reason is not None
-    assert found.reason.startswith("No step beyond ")
-    assert found.states[-1].pressure_kPa == pytest.approx(found.figures["pressure_kPa"])
-    assert 0 < found.figures["pressure_kPa"] < 50
-    assert found.history["pressure_kPa"][-1] == pytest.approx(found.figures["pressure_kPa"])
+    assert found.reason.startswith("Beyond 0 kPa no step of the pressure converged (")
+    assert [state.pressure_kPa for state in found.states] == [0.0]
+
+
+def test_beyond_a_limit_point_the_pressure_falls() -> None:
+    """A soft neo-Hookean block blows up: no equilibrium at 50 kPa, but ever larger volumes."""
+    soft = replace(elastomer("neo_hookean", C10=0.004), largest_stretch=4.0)
+    found = free_actuation(block(), soft, PAPER)
+    assert found.status is Status.overstretched
+    pressure, volume = (found.history[f"{k}"] for k in ("pressure_kPa", "cavity_volume_mm3"))
+    assert found.figures["limit_points"] == 1
+    assert pressure[-1] < 0.95 * pressure.max()
+    assert (np.diff(volume) > 0).all()
+    assert found.figures["volume_controlled_from_kPa"] == pytest.approx(pressure.max(), rel=0.02)
+    # The last state is recorded, at a pressure that was passed before.
+    assert found.states[-1].pressure_kPa == pressure[-1] == found.figures["pressure_kPa"]
+    recorded = found.history["recorded"]
+    assert recorded.sum() == len(found.states)
+    np.testing.assert_array_equal(pressure[recorded], [s.pressure_kPa for s in found.states])
+
+
+def test_beyond_two_limit_points_the_pressure_rises_again() -> None:
+    """With a material that stiffens, the last pressure lies on the branch beyond both."""
+    stiffening = elastomer("yeoh", C10=0.004, C20=1e-5, C30=1e-6)
+    wanted = Actuation(maximum_pressure_kPa=7.6, recorded_step_kPa=3.8)
+    found = free_actuation(block(), replace(stiffening, largest_stretch=100), PAPER, wanted)
+    assert (found.status, found.figures["limit_points"]) == (Status.ok, 1)
+    assert [s.pressure_kPa for s in found.states] == pytest.approx([0, 3.8, 7.6])
+    pressure, work = found.history["pressure_kPa"], found.history["stored_energy_mJ"][-1]
+    steps = np.diff(found.history["cavity_volume_mm3"])
+    done = (0.5 * (pressure[1:] + pressure[:-1]) * steps).sum() * 1e-3
+    assert done == pytest.approx(work, rel=0.01)
 
 
 @pytest.mark.parametrize("missing", ["fixed", "cavity"])

@@ -31,7 +31,9 @@ def test_defaults_are_those_of_the_library() -> None:
     assert gate == asdict(MeshGate())
     assert defaults["mesh"]["meshers"] == list(MESHERS)
     limits = {"bending_limit_deg": defaults["solve"]["bending_limit_deg"]}
-    assert defaults["solve"] == asdict(Actuation()) | limits
+    solve = asdict(Actuation())
+    gravity = {"gravity_m_s2": list(solve["gravity_m_s2"])}
+    assert defaults["solve"] == solve | gravity | limits
 
 
 def test_what_is_lacking_takes_its_default(tmp_path: Path) -> None:

@@ -1,0 +1,155 @@
+"""The actuator as a finite-element model."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.actuation.settings import ELEMENTS, Actuation
+from pagd.errors import InputError
+from pagd.fem.assembly import Assembly
+from pagd.fem.bending import bending_terms
+from pagd.fem.contact import FaceContact
+from pagd.fem.follower_pressure import FollowerPressure
+from pagd.fem.gravity import Gravity
+from pagd.fem.membrane import Membrane
+from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
+from pagd.fem.term import EnergyTerm
+from pagd.materials import Elastomer, Sheet
+from pagd.mesh.types import Mesh
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Walls are slanted by up to 45° to the actuator; nothing else of the outside looks along it.
+_LOOKS_ALONG = 0.5
+
+
+class Body:
+    """The terms of the potential, and the unknowns that are held.
+
+    Parameters
+    ----------
+    mesh
+        Quadratic tetrahedra with the surfaces ``fixed`` and ``cavity``; ``outer``, ``paper`` and
+        ``symmetry`` where there are such.
+    material, paper
+        The elastomer, and the sheet at the surface ``paper``.
+    actuation
+        Element, contact and gravity.
+
+    Attributes
+    ----------
+    terms, size
+        The energy terms and the number of unknowns, displacements (3 a node) first.
+    fixed
+        Which unknowns (size,) the clamp and the plane of symmetry hold.
+    copies
+        2 for a half model, 1 for a whole one.
+
+    Raises
+    ------
+    InputError
+        Where a surface is missing, the element unknown, the paper not flat, or gravity would act
+        across a plane of symmetry.
+    """
+
+    def __init__(
+        self, mesh: Mesh, material: Elastomer, paper: Sheet, actuation: Actuation | None = None
+    ) -> None:
+        wanted = actuation or Actuation()
+        self.mesh, self.material = mesh, material
+        self.nodes = len(mesh.points)
+        self.copies = 2 if "symmetry" in mesh.surfaces else 1
+        self.solid = _solid(mesh, material, wanted.element)
+        self.size = 3 * self.nodes
+        self.size += self.solid.pressures if isinstance(self.solid, TaylorHoodSolid) else 0
+        self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
+        self.gravity = _gravity(mesh, material, wanted.gravity_m_s2)
+        self.contact = _contact(mesh) if wanted.contact else None
+        terms: list[EnergyTerm] = [self.solid, self.pressure, *_paper_terms(mesh, paper)]
+        terms += [term for term in (self.gravity, self.contact) if term is not None]
+        self.terms = tuple(terms)
+        self.fixed = self._fixed(mesh)
+
+    def _fixed(self, mesh: Mesh) -> BoolArray:
+        fixed = np.zeros(self.size, dtype=np.bool_)
+        fixed[(3 * mesh.nodes_of("fixed")[:, None] + np.arange(3)).ravel()] = True
+        if "symmetry" in mesh.surfaces:
+            fixed[3 * mesh.nodes_of("symmetry") + 1] = True
+        return fixed
+
+    def assembly(self) -> Assembly:
+        """The terms as one system, nothing but the clamp and the symmetry held."""
+        return Assembly(self.terms, self.size, self.fixed)
+
+    def displacement(self, unknowns: FloatArray) -> FloatArray:
+        """Displacements (n, 3) in mm."""
+        return np.asarray(unknowns[: 3 * self.nodes].reshape(-1, 3).copy())
+
+    def volume(self, unknowns: FloatArray) -> float:
+        """Cavity volume of the whole actuator, in mm³."""
+        return self.copies * self.pressure.volume(unknowns)
+
+    @property
+    def solid_volume(self) -> float:
+        """Volume of elastomer of the whole actuator, in mm³."""
+        return self.copies * float(self.solid.weights.sum())
+
+
+def normals_of(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Unit normals (F, 3) of the flat corner triangles of faces, out of the solid."""
+    corners = points[faces[:, :3]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+def _solid(mesh: Mesh, material: Elastomer, element: str) -> TaylorHoodSolid | ElementPressureSolid:
+    if element not in ELEMENTS:
+        raise InputError(f"element is {element!r}, but must be one of {', '.join(ELEMENTS)}")
+    if element == "taylor_hood":
+        return TaylorHoodSolid(mesh.points, mesh.tets, material, 3 * len(mesh.points))
+    return ElementPressureSolid(mesh.points, mesh.tets, material)
+
+
+def _cavity(mesh: Mesh) -> IntArray:
+    mesh.nodes_of("cavity")  # says which surfaces there are where this is missing
+    return mesh.surfaces["cavity"]
+
+
+def _paper_terms(mesh: Mesh, paper: Sheet) -> list[EnergyTerm]:
+    """Membrane and bending of the paper; nothing where the mesh has no such surface."""
+    if "paper" not in mesh.surfaces:
+        return []
+    faces = mesh.surfaces["paper"]
+    symmetry = mesh.nodes_of("symmetry") if "symmetry" in mesh.surfaces else None
+    bending = bending_terms(
+        mesh.points, faces, paper, clamped=mesh.nodes_of("fixed"), symmetry=symmetry
+    )
+    return [Membrane(mesh.points, faces, paper), *bending]
+
+
+def _gravity(
+    mesh: Mesh, material: Elastomer, acceleration: tuple[float, float, float]
+) -> Gravity | None:
+    if not any(acceleration):
+        return None
+    if "symmetry" in mesh.surfaces and acceleration[1]:
+        raise InputError(
+            f"gravity_m_s2 = {list(acceleration)}: its second number must be 0 where half of a "
+            "symmetric actuator is solved (mesh.half_model = true)."
+        )
+    return Gravity(mesh.points, mesh.tets, material.density_kg_m3, np.array(acceleration))
+
+
+def _contact(mesh: Mesh) -> FaceContact | None:
+    """Contact of the outer faces that look along the actuator with those that look back."""
+    if "outer" not in mesh.surfaces:
+        return None
+    faces = mesh.surfaces["outer"]
+    along = normals_of(mesh.points, faces)[:, 0]
+    slaves, masters = faces[along > _LOOKS_ALONG], faces[along < -_LOOKS_ALONG]
+    if len(slaves) == 0 or len(masters) == 0:
+        return None
+    return FaceContact(mesh.points, slaves, masters)

@@ -1,0 +1,157 @@
+"""From rest to the last pressure, by control of the pressure and where that fails of the volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.actuation.body import Body
+from pagd.actuation.recorder import Recorder
+from pagd.actuation.result import ActuationResult, Figures
+from pagd.actuation.settings import Actuation
+from pagd.errors import Status
+from pagd.fem.assembly import Assembly, State
+from pagd.fem.conjugate import ConjugatePath
+from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
+from pagd.fem.linear_solver import LinearSolver, linear_solver
+from pagd.fem.newton import Newton, NewtonSettings
+
+FloatArray = NDArray[np.float64]
+
+_KPA = 1e-3  # MPa
+
+# Where points come into contact or leave it, corrections need not shrink at once.
+_PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0}
+
+# Gravity is raised in so many steps at first, and by no less than so many of these.
+_GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class _Followed:
+    """How a path ended; the pressure (kPa) from which on the volume was controlled."""
+
+    path: LoadPath
+    volume_controlled_from: float | None = None
+
+
+def follow(
+    body: Body, assembly: Assembly, actuation: Actuation, recorder: Recorder
+) -> ActuationResult:
+    """Raise the pressure through the recorded ones, as far as it goes.
+
+    Parameters
+    ----------
+    body
+        The actuator.
+    assembly
+        Its terms, with all that is held.
+    actuation
+        Pressures and tolerances.
+    recorder
+        Is called with every converged step, the unloaded one first.
+    """
+    solver = linear_solver(actuation.linear_solver)
+    settings = NewtonSettings(
+        tolerance=actuation.tolerance_mm, **(_PATIENT if body.contact else {})
+    )
+    newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure)
+    followed = _follow(body, newton, actuation, recorder)
+    # Where the path ends early, how far it came is a result too.
+    recorder.record_last()
+    solver.free()
+    status, reason = _ending(followed, recorder)
+    history = recorder.history()
+    figures = _figures(body, assembly, followed, solver) | _gaps(history)
+    return ActuationResult(status, reason, recorder.states, history, figures)
+
+
+def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder) -> _Followed:
+    start, failure = _at_rest(body, newton)
+    recorder(Step(start, 0, True))
+    if failure:
+        return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure))
+    control = StepControl(
+        first=actuation.first_step_kPa * _KPA, smallest=actuation.smallest_step_kPa * _KPA
+    )
+    pressures = list(actuation.recorded_kPa() * _KPA)
+    continuation = Continuation(newton, control)
+    path = continuation.follow(pressures, recorder, start)
+    if not path.failure or len(continuation.states) < 2:
+        return _Followed(path)
+    left = [pressure for pressure in pressures if pressure > path.load]
+    further = ConjugatePath(newton, control).follow(continuation.states, left, recorder, path)
+    if further.steps == path.steps:
+        return _Followed(further)
+    return _Followed(further, path.load / _KPA)
+
+
+def _at_rest(body: Body, newton: Newton) -> tuple[State, str]:
+    """The state without pressure, under gravity where there is any; why there is none."""
+    state = newton.assembly.at_rest()
+    newton.assembly.look_around(state)
+    if body.gravity is None:
+        newton.assembly.linearize(state)
+        return state, ""
+    share, step = 0.0, _GRAVITY_STEP
+    while share < 1.0:
+        body.gravity.share = min(share + step, 1.0)
+        result = newton.solve(state)
+        if result.state is not None:
+            share, state = body.gravity.share, result.state
+            continue
+        step /= 2
+        if step < _SMALLEST_GRAVITY_STEP:
+            body.gravity.share = share
+            return state, f"under {share:.1%} of gravity: {result.reason}"
+    return state, ""
+
+
+def _ending(followed: _Followed, recorder: Recorder) -> tuple[Status, str | None]:
+    path = followed.path
+    if recorder.ending:
+        return recorder.ending
+    if path.failure:
+        means = "no step of the pressure"
+        if followed.volume_controlled_from is not None:
+            means += f" and, from {followed.volume_controlled_from:.4g} kPa on, of the volume"
+        return Status.not_converged, (
+            f"Beyond {path.load / _KPA:.4g} kPa {means} converged ({path.failure})."
+        )
+    return Status.ok, None
+
+
+def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: LinearSolver) -> Figures:
+    path = followed.path
+    figures: Figures = {
+        "tets": len(body.solid.nodes),
+        "unknowns": len(assembly.free),
+        "newton_iterations": path.iterations,
+        "steps": path.steps,
+        "rejected_steps": path.rejected,
+        "pressure_kPa": path.load / _KPA,
+        "solid_volume_mm3": body.solid_volume,
+        "linear_solver": solver.name,
+    }
+    if followed.volume_controlled_from is not None:
+        figures["volume_controlled_from_kPa"] = followed.volume_controlled_from
+    return figures
+
+
+def _gaps(history: dict[str, FloatArray]) -> Figures:
+    """What the history says of limit points, and of gaps where any walls are near."""
+    pressure, gap = history["pressure_kPa"], history["smallest_gap_mm"]
+    rises = np.diff(pressure) > 0
+    figures: Figures = {"limit_points": int(np.count_nonzero(rises[:-1] & ~rises[1:]))}
+    known = gap[np.isfinite(gap)]
+    if len(known) == 0:
+        return figures
+    figures["smallest_gap_mm"] = float(known[-1])
+    figures["deepest_penetration_mm"] = depth = max(-float(known.min()), 0.0)
+    if np.isfinite(gap[0]) and gap[0] > 0:
+        figures["initial_gap_mm"] = float(gap[0])
+        figures["penetration_share"] = depth / float(gap[0])
+    return figures

@@ -1,0 +1,73 @@
+"""What an analysis leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.errors import Status
+
+FloatArray = NDArray[np.float64]
+
+#: Looks at the pressure (kPa) and the displacement (n, 3) of a converged step; may end the
+#: analysis, with a status and a reason.
+Stop = Callable[[float, FloatArray], tuple[Status, str] | None]
+
+#: Numbers and words by name, units in the names.
+Figures = dict[str, float | int | str]
+
+#: Is told the pressure in kPa and the iterations of every converged step.
+Progress = Callable[[float, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedState:
+    """A state at a recorded pressure.
+
+    ``displacement`` (n, 3) in mm, ``strain`` (n,) largest principal logarithmic strain at the
+    nodes, ``strain_max`` and ``strain_p99`` its largest value and 99th percentile by volume.
+    """
+
+    pressure_kPa: float
+    displacement: FloatArray
+    strain: FloatArray
+    strain_max: float
+    strain_p99: float
+
+
+@dataclass(frozen=True, slots=True)
+class ActuationResult:
+    """How the analysis ended, and everything up to there.
+
+    Attributes
+    ----------
+    status, reason
+        ``ok``, or why the last pressure was not reached.
+    states
+        The unloaded state first, then the recorded pressures that were reached, and last the
+        state at which the analysis ended early, whatever its pressure.
+    history
+        One row a converged step, in the order of the path, the unloaded state first:
+        ``pressure_kPa``, ``cavity_volume_mm3`` and ``stored_energy_mJ`` of the whole actuator
+        (the latter since pressure zero, with the potential of gravity), ``newton_iterations``,
+        ``recorded`` (the k-th true row is the k-th state), ``smallest_gap_mm`` between walls
+        (not a number where none are near); where the tip is held ``blocked_force_N``, of
+        recorded states only.
+    figures
+        Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``steps``, ``rejected_steps``;
+        ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator; ``linear_solver``;
+        ``limit_points``, maxima of the pressure along the path, and
+        ``volume_controlled_from_kPa`` where pressure control failed; with contact
+        ``initial_gap_mm``, ``smallest_gap_mm`` (at the end; negative for a penetration),
+        ``deepest_penetration_mm`` (of all steps) and ``penetration_share`` of the initial gap,
+        where any walls are near; where the tip is held ``variant`` and ``blocked_force_N``.
+    """
+
+    status: Status
+    reason: str | None
+    states: list[RecordedState]
+    history: dict[str, FloatArray]
+    figures: Figures

@@ -1,0 +1,18 @@
+"""How many threads an analysis uses."""
+
+from __future__ import annotations
+
+import os
+
+
+def use_threads(count: int) -> None:
+    """Let the kernels and the linear solver use ``count`` threads.
+
+    To be called before the first analysis: MKL reads its setting when it is loaded.
+    """
+    import numba
+    from numba import config
+
+    for variable in ("MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+        os.environ[variable] = str(count)
+    numba.set_num_threads(min(count, config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
