@@ -99,10 +99,10 @@ def _cross_each_other(first: FloatArray, second: FloatArray, work: FloatArray) -
 @compiled
 def _apart(low: FloatArray, high: FloatArray, others: FloatArray, ends: FloatArray) -> bool:
     """Whether two boxes have nothing in common."""
+    apart = False
     for k in range(3):
-        if high[k] < others[k] or ends[k] < low[k]:
-            return True
-    return False
+        apart |= high[k] < others[k] or ends[k] < low[k]
+    return apart
 
 
 @compiled
