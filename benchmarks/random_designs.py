@@ -1,0 +1,159 @@
+"""Random designs through the whole chain: how they end, and what it takes.
+
+    python benchmarks/random_designs.py [--designs 200] [--seed 1] [--size 5] [--processes 2]
+        [--time-limit 1800] [--config JSON] [--out results/random_designs]
+        [--markdown FILE] [--report-only]
+
+Each design has a process of its own. Repeating the command runs only what is not finished yet.
+Written to the folder: report.json, with a row a design, and report.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+import sys
+import time
+from datetime import timedelta
+from pathlib import Path
+
+from robustness.drawing import drawn_designs
+from robustness.machine import machine
+from robustness.page import as_markdown
+from robustness.processes import Ending, Task, run_tasks
+from robustness.results import Result, result_of
+from robustness.study import Study
+from robustness.summary import summarize
+
+from pagd import config as configuration
+from pagd.errors import InputError
+from pagd.files import write_text
+
+
+def main() -> None:
+    """Run what is not finished, print the report and write it."""
+    parser = _parser()
+    options = parser.parse_args()
+    try:
+        study = _study(options)
+        if not options.report_only:
+            _run(study, options.processes, options.time_limit)
+        _report(study, options)
+    except InputError as error:
+        parser.error(str(error))
+    except KeyboardInterrupt:
+        sys.exit("interrupted; the same command goes on from here")
+
+
+def _study(options: argparse.Namespace) -> Study:
+    for name in ("designs", "size", "processes", "time_limit"):
+        if not getattr(options, name) > 0:
+            raise InputError(f"--{name.replace('_', '-')} must be greater than 0.")
+    if options.seed < 0:
+        raise InputError("--seed must be at least 0.")
+    config = configuration.load(options.config)
+    config["mesh"]["size_mm"] = options.size
+    return Study(options.out, drawn_designs(options.designs, options.seed, config), config)
+
+
+def _run(study: Study, processes: int, limit_s: float) -> None:
+    by_name = {named.name: named for named in study.designs}
+    waiting = study.unfinished()
+    progress = _Progress(len(study.designs), len(waiting))
+
+    def ended(task: Task, ending: Ending) -> None:
+        named = by_name[task.name]
+        run = study.end(named, ending)
+        progress.tell(result_of(named, study.folder(named), run))
+
+    run_tasks((study.start(named) for named in waiting), processes, limit_s, ended)
+
+
+class _Progress:
+    """One line a design that has ended."""
+
+    def __init__(self, designs: int, waiting: int) -> None:
+        self._designs, self._waiting = designs, waiting
+        self._start, self._ended = time.monotonic(), 0
+
+    def tell(self, result: Result) -> None:
+        """Say how a design ended, how long it took, and how long the others will."""
+        self._ended += 1
+        missing = self._waiting - self._ended
+        left = missing * (time.monotonic() - self._start) / self._ended
+        pressure = "" if result.pressure_kPa is None else f"{result.pressure_kPa:.4g} kPa"
+        print(
+            f"{self._designs - missing:4d}/{self._designs} {result.design_id} {result.mode:<8} "
+            f"{result.status:<13} {pressure:>9} {result.newton_iterations:4d} iterations "
+            f"{result.seconds:7.1f} s, left {timedelta(seconds=round(left))}",
+            flush=True,
+        )
+
+
+def _report(study: Study, options: argparse.Namespace) -> None:
+    runs = [(named, study.run_of(named)) for named in study.designs]
+    results = [result_of(named, study.folder(named), run) for named, run in runs if run]
+    if not results:
+        raise InputError(f"{study.out}: none of the {len(runs)} designs is done.")
+    folders = [study.folder(named) for named, run in runs if run]
+    report = {
+        "study": {
+            "designs": options.designs,
+            "seed": options.seed,
+            "size_mm": options.size,
+            "time_limit_s": options.time_limit,
+            "config": study.config,
+        },
+        "command": _command(options),
+        "machine": machine(folders, options.processes),
+        "summary": summarize(results, len(runs)),
+        "results": [result.as_dict() for result in results],
+    }
+    page = as_markdown(report)
+    text = json.dumps(report, indent=1, ensure_ascii=False, allow_nan=False)
+    write_text(study.out / "report.json", text + "\n")
+    for file in filter(None, (study.out / "report.md", options.markdown)):
+        write_text(file, page)
+    print(page, end="")
+
+
+def _command(options: argparse.Namespace) -> str:
+    """The command that prints the same again."""
+    numbers = f"--designs {options.designs} --seed {options.seed} --size {options.size:g}"
+    lines = [f"python benchmarks/random_designs.py {numbers} --processes {options.processes}"]
+    if options.config:
+        lines.append(f"--config {shlex.quote(options.config)}")
+    if options.markdown:
+        lines.append(f"--markdown {shlex.quote(str(options.markdown))}")
+    return " \\\n  ".join(lines)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add = parser.add_argument
+    add("--designs", type=int, default=200, help="how many (default: %(default)s)")
+    add("--seed", type=int, default=1, help="of the drawing (default: %(default)s)")
+    add("--size", type=float, default=5.0, help="mesh size in mm (default: %(default)g)")
+    add("--processes", type=int, default=2, help="designs at a time (default: %(default)s)")
+    add(
+        "--time-limit",
+        type=float,
+        default=1800.0,
+        metavar="SECONDS",
+        help="a design that takes longer is ended and counts as failed (default: %(default)g)",
+    )
+    add("--config", help="file or JSON text; --size takes the place of mesh.size_mm")
+    add(
+        "--out",
+        type=Path,
+        default=Path("results/random_designs"),
+        help="folder (default: %(default)s)",
+    )
+    add("--markdown", type=Path, help="file that the report is written to as well")
+    add("--report-only", action="store_true", help="run nothing; report what there is")
+    return parser
+
+
+if __name__ == "__main__":
+    main()

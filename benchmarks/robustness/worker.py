@@ -1,0 +1,43 @@
+"""The process of one design: its task as one line of JSON on standard input, then every stage.
+
+Ends at once when standard input closes: with the study, its workers are gone too.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+__all__ = ["run_chain"]
+
+
+def run_chain(task: dict[str, Any]) -> None:
+    """Run geometry, repair, mesh, solve and metrics of a task's design, without pictures."""
+    from pagd.catalogue import design_from
+    from pagd.stages import geometry, mesh, metrics, repair, solve
+
+    config = task["config"]
+    out = {s: Path(task["out"], s) for s in ("geometry", "repair", "mesh", "solve", "metrics")}
+    geometry.run(design_from(json.dumps(task["design"])), out["geometry"], config)
+    repair.run(out["geometry"], out["repair"], config)
+    mesh.run(out["geometry"], out["repair"], out["mesh"], config)
+    solve.run(out["mesh"], out["solve"], config, solve.materials_of(config))
+    folders = metrics.Folders(
+        mesh=out["mesh"], solve=out["solve"], geometry=out["geometry"], repair=out["repair"]
+    )
+    metrics.run(folders, out["metrics"], config)
+
+
+def _leave_with_the_study() -> None:
+    sys.stdin.read()
+    os._exit(os.EX_UNAVAILABLE)
+
+
+if __name__ == "__main__":
+    given = json.loads(sys.stdin.readline())
+    threading.Thread(target=_leave_with_the_study, daemon=True).start()
+    run_chain(given)
