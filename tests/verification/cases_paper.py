@@ -212,8 +212,3 @@ def elastica(load: float = 5.0) -> list[Figure]:
                 )
             )
     return figures
-
-
-def paper() -> list[Figure]:
-    """All of it."""
-    return circle() + elastica()

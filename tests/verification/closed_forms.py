@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 #: The Yeoh coefficients C10 and C20 in MPa of the two materials that things are verified with.
 NEO_HOOKE, YEOH = (0.11, 0.0), (0.11, 0.02)
@@ -41,6 +41,14 @@ def sphere_pressure(material: Coefficients, inner: float, outer: float, stretch:
     slope = _slope(material, lambda s: (s, s, s**-2))
     outer_stretch = (1 + (inner / outer) ** 3 * (stretch**3 - 1)) ** (1 / 3)
     return float(quad(lambda s: slope(s) / (s**3 - 1), outer_stretch, stretch)[0])
+
+
+def limit_point(material: Coefficients, inner: float, outer: float) -> tuple[float, float]:
+    """Stretch λa and pressure (MPa) at which the pressure of a thick sphere is largest."""
+    found = minimize_scalar(
+        lambda s: -sphere_pressure(material, inner, outer, s), bounds=(1.2, 2.5), method="bounded"
+    )
+    return float(found.x), float(-found.fun)
 
 
 def cylinder_pressure(material: Coefficients, inner: float, outer: float, stretch: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -101,6 +102,11 @@ class Case:
     def name(self) -> str:
         """Name of the function."""
         return self.rows.__name__
+
+    @property
+    def is_possible(self) -> bool:
+        """Whether the program they need is there."""
+        return self.program is None or shutil.which(self.program) is not None
 
 
 def check(figures: Iterable[Figure]) -> None:

@@ -1,12 +1,12 @@
+"""Walls and supports."""
+
 from __future__ import annotations
 
-from cases_contact import narrow_row, two_blocks
-from figure import check
+import pytest
+from catalogue import quick
+from figure import Case, Group, check
 
 
-def test_two_blocks_act_as_one() -> None:
-    check(two_blocks())
-
-
-def test_walls_that_touch_push_each_other_apart() -> None:
-    check(narrow_row())
+@pytest.mark.parametrize("case", quick(Group.contact, Group.supports), ids=lambda case: case.name)
+def test_contact(case: Case) -> None:
+    check(case.rows())

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cases_paper import circle, elastica
+from catalogue import quick
 from closed_forms import elastica_tip
-from figure import check
+from figure import Case, Group, check
 from scipy.special import ellipk, ellipkinc
 
 
@@ -26,9 +26,6 @@ def test_small_loads_bend_as_a_beam() -> None:
     assert slope == pytest.approx(1e-3 / 2, rel=1e-5)
 
 
-def test_end_moment() -> None:
-    check(circle())
-
-
-def test_end_force() -> None:
-    check(elastica())
+@pytest.mark.parametrize("case", quick(Group.paper), ids=lambda case: case.name)
+def test_paper(case: Case) -> None:
+    check(case.rows())

@@ -1,0 +1,54 @@
+"""All cases of the verification, in the order of the page."""
+
+from __future__ import annotations
+
+from cases_actuators import balance_of_energy, element_table, other_library, resultants, symmetries
+from cases_contact import narrow_row, two_blocks
+from cases_inflation import moved_walls, walls_under_pressure
+from cases_material import balloon, homogeneous_states
+from cases_paper import circle, elastica
+from cases_solid import block_bending, convergence, cook_membrane, patch_test, rigid_rotation
+from cases_tangents import tangents
+from figure import Case, Group
+
+CASES: tuple[Case, ...] = (
+    Case(rows=patch_test, group=Group.solids),
+    Case(rows=rigid_rotation, group=Group.solids),
+    Case(rows=tangents, group=Group.solids),
+    Case(rows=homogeneous_states, group=Group.solids),
+    Case(rows=moved_walls, group=Group.solids),
+    Case(rows=walls_under_pressure, group=Group.solids),
+    Case(rows=balloon, group=Group.solids),
+    Case(rows=block_bending, group=Group.solids),
+    Case(rows=cook_membrane, group=Group.solids),
+    Case(rows=convergence, group=Group.rates),
+    Case(rows=circle, group=Group.paper),
+    Case(rows=elastica, group=Group.paper),
+    Case(rows=resultants, group=Group.pressure),
+    Case(rows=balance_of_energy, group=Group.pressure),
+    Case(rows=two_blocks, group=Group.contact),
+    Case(rows=narrow_row, group=Group.contact),
+    Case(rows=symmetries, group=Group.symmetry),
+    Case(rows=other_library, group=Group.programs),
+    Case(rows=element_table, group=Group.programs, costly=True),
+)
+
+
+def find(names: list[str]) -> list[Case]:
+    """The cases of these names, all of them where there are no names.
+
+    Raises
+    ------
+    ValueError
+        If there is no case of a name.
+    """
+    known = {case.name: case for case in CASES}
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise ValueError(f"{unknown[0]!r} is no case; they are {', '.join(known)}")
+    return [case for case in CASES if not names or case.name in names]
+
+
+def quick(*groups: Group) -> list[Case]:
+    """The cases of these groups that are cheap, and whose programs are there."""
+    return [case for case in CASES if case.group in groups and not case.costly and case.is_possible]
