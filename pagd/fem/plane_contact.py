@@ -8,12 +8,11 @@ is ψ″ n ⊗ n alone. The plane bounds a half-space: however deep a face has g
 from __future__ import annotations
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
 from pagd.errors import InputError
 from pagd.fem import shapes
-from pagd.fem.compiled import compiled, compiled_parallel
+from pagd.fem.compiled import compiled
 from pagd.fem.contact import ContactLaw
 from pagd.fem.contact_kernels import pressure_law, slave_point
 from pagd.fem.faces import face_areas
@@ -43,7 +42,7 @@ def _add(
             entry += 1
 
 
-@compiled_parallel
+@compiled
 def _linearize(
     positions: FloatArray,
     faces: IntArray,
@@ -59,8 +58,8 @@ def _linearize(
     energies: FloatArray,
 ) -> None:
     """Residuals (F, 18), packed tangents (F, 171), gaps (F, Q) and energies (F,) of the faces."""
-    for e in prange(faces.shape[0]):
-        point = np.empty(3)
+    point = np.empty(3)
+    for e in range(faces.shape[0]):
         residual[e, :], tangent[e, :], energies[e] = 0.0, 0.0, 0.0
         for q in range(values.shape[0]):
             slave_point(positions, faces[e], values[q], point)

@@ -19,11 +19,12 @@ LENGTH, WIDTH, HEIGHT = 120.0, 9.0, 6.0
 
 
 def strip(*, half: bool = False, cells: tuple[int, int, int] = (40, 3, 2)) -> Mesh:
-    """A bar along x, its end at x = 0 the surface ``fixed``; as a half, y = 0 is ``symmetry``."""
+    """A bar along x from ``fixed`` to ``tip``; as a half, its side y = 0 is ``symmetry``."""
     mesh = box((LENGTH, WIDTH, HEIGHT), cells)
-    names = ["x1", "y1", "z0", "z1"] + ([] if half else ["y0"])
+    names = ["y1", "z0", "z1"] + ([] if half else ["y0"])
     surfaces = {
         "fixed": mesh.surfaces["x0"],
+        "tip": mesh.surfaces["x1"],
         "outer": np.vstack([mesh.surfaces[name] for name in names]),
     }
     surfaces |= {"symmetry": mesh.surfaces["y0"]} if half else {}
