@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ FloatArray = NDArray[np.float64]
 class States:
     """States at the recorded pressures.
 
-    pressure_kPa: (p,) rising pressures.
+    pressure_kPa: (p,) pressures in the order of the path, where they may fall and come again.
     displacement: (p, n, 3) displacements of the mesh's nodes in mm.
     strain: (p, n) largest principal logarithmic strain at the nodes.
     """
@@ -61,16 +62,24 @@ def write_states(states: States, path: Path) -> None:
 
 
 def read_states(path: Path) -> States:
-    """Read states; ``InputError`` if the file does not hold the same nodes for every pressure."""
+    """Read states; ``InputError`` if the file does not hold the same nodes for every state."""
     table = read_table(path)
-    pressure, first = np.unique(table["pressure_kPa"], return_index=True)
-    p, n = len(pressure), len(table["node"]) // max(len(pressure), 1)
-    regular = np.array_equal(first, np.arange(p) * n) and len(table["node"]) == p * n
-    if not regular or not np.array_equal(table["node"], np.tile(np.arange(n), p)):
+    # A state begins at node 0: two may have the same pressure.
+    p = int(np.count_nonzero(table["node"] == 0))
+    n = len(table["node"]) // max(p, 1)
+    if not _is_regular(table, p, n):
         raise InputError(f"{path}: the states do not all hold the same nodes in order.")
     displacement = np.column_stack([table[key] for key in ("ux", "uy", "uz")])
     return States(
-        pressure_kPa=pressure,
+        pressure_kPa=table["pressure_kPa"].reshape(p, n)[:, 0],
         displacement=displacement.reshape(p, n, 3).astype(np.float64),
         strain=table["strain"].reshape(p, n).astype(np.float64),
     )
+
+
+def _is_regular(table: dict[str, NDArray[Any]], p: int, n: int) -> bool:
+    """Tell whether a table holds p states of one pressure each, of nodes 0 to n - 1 in order."""
+    if len(table["node"]) != p * n:
+        return False
+    node, pressure = (table[key].reshape(p, n) for key in ("node", "pressure_kPa"))
+    return bool(np.all(node == np.arange(n)) and np.all(pressure == pressure[:, :1]))

@@ -16,9 +16,9 @@ STAGE_VERSIONS = {
     "repair": 1,
     "mesh": 1,
     "solve": 3,
-    "metrics": 1,
+    "metrics": 2,
     "figures": 2,
     "generative_figures": 1,
-    "summary": 2,
+    "summary": 3,
     "report": 3,
 }

@@ -1,7 +1,8 @@
-"""Stage 5: from the deformed states to trajectory, bending, twist, work and mode."""
+"""Stage 5: from the deformed states to trajectory, bending, twist, work, contact and mode."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,22 +12,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.errors import InputError, Status
+from pagd.fem.contact import ContactLaw
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
-from pagd.metrics import Thresholds, Trajectory, is_still, measure, performance
+from pagd.metrics import (
+    Kind,
+    Thresholds,
+    Trajectory,
+    blocked_force_at,
+    chamber_columns,
+    first_contact_pressure,
+    is_still,
+    kinds_of,
+    measure,
+    performance,
+    strain_columns,
+)
 from pagd.record import Meter, Record, read_record
 from pagd.sections import Stations, stations_of
 from pagd.stages.geometry import read_design
 from pagd.stages.mesh import identity, mesh_file
 from pagd.stages.sections import even_stations_of, sections_of
-from pagd.stages.solve import HISTORY_NAME, STATES_NAME
+from pagd.stages.solve import BLOCKED_NAME, HISTORY_NAME, STATES_NAME
 from pagd.stages.stage import Outcome, run_stage
 from pagd.states import read_states
-from pagd.tables import MEASURES, TRAJECTORY, read_table, write_table
+from pagd.tables import CHAMBERS, MEASURES, TRAJECTORY, Column, read_table, write_table
 
-__all__ = ["PERFORMANCE_NAME", "TRAJECTORY_NAME", "Folders", "run"]
+__all__ = ["CHAMBERS_NAME", "PERFORMANCE_NAME", "TRAJECTORY_NAME", "Folders", "run"]
 
 TRAJECTORY_NAME = "trajectory.parquet"
+CHAMBERS_NAME = "chambers.parquet"
 PERFORMANCE_NAME = "performance.parquet"
 
 Columns = dict[str, NDArray[Any]]
@@ -51,7 +66,7 @@ class Folders:
 
 
 def run(folders: Folders, out: Path, config: Mapping[str, Any], sections: int = 11) -> Record:
-    """Measure the recorded states: trajectory.parquet and performance.parquet.
+    """Measure the recorded states: trajectory, chambers and performance, a Parquet file each.
 
     A design that stopped early is measured as far as it came. The figures of the record are the
     design's row in the table of all designs.
@@ -73,15 +88,23 @@ def run(folders: Folders, out: Path, config: Mapping[str, Any], sections: int = 
         If the mesh is not the one that was solved.
     """
     upstream = folders.records()
-    thresholds = Thresholds(**config["metrics"])
+    settings = dict(config["metrics"])
+    ramp = settings.pop("pressure_ramp_kPa_per_s")
+    thresholds = Thresholds(**settings)
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         outcome.figures |= _described(folders.geometry) | _cost(upstream)
         if not (folders.solve / STATES_NAME).is_file():
             return
-        measures = _measured(folders, folder, sections, thresholds)
-        last = {key: values[-1] for key, values in measures.items()}
-        outcome.figures |= last | _sizes(upstream)
+        solved = upstream[-1]
+        trajectory = _trajectory(folders, solved, sections)
+        history = read_table(folders.solve / HISTORY_NAME)
+        measures = performance(trajectory, history, solved.figures["solid_volume_mm3"], thresholds)
+        measures |= _strains(solved, ramp) | _blocked(folders.solve, trajectory)
+        _write(folder, solved.design_id, trajectory, measures, _kinds(folders.geometry))
+        last = {key: _plain(values[-1]) for key, values in measures.items()}
+        contact = {"first_contact_pressure_kPa": _first_contact(solved, history)}
+        outcome.figures |= last | contact | _of_solve(solved) | _sizes(upstream)
         _refuse_still(outcome, last, thresholds)
 
     return run_stage(
@@ -121,19 +144,70 @@ def _sizes(upstream: list[Record]) -> dict[str, Any]:
     }
 
 
-def _measured(folders: Folders, out: Path, sections: int, thresholds: Thresholds) -> Columns:
-    mesh = read_msh(mesh_file(folders.mesh))
-    solved = read_record(folders.solve)
-    _refuse_other_mesh(folders, mesh, solved)
-    trajectory = _trajectory(folders, mesh, sections)
-    history = read_table(folders.solve / HISTORY_NAME)
-    volume = solved.figures["solid_volume_mm3"]
-    measures = performance(trajectory, history, volume, thresholds)
-    strains = {key: np.array(solved.figures["recorded"][key]) for key in _STRAINS}
-    table = {"design_id": [solved.design_id] * trajectory.positions[..., 0].size}
-    write_table(out / TRAJECTORY_NAME, TRAJECTORY, table | trajectory.columns())
-    write_table(out / PERFORMANCE_NAME, MEASURES, measures | strains)
-    return measures | strains
+def _plain(value: Any) -> Any:
+    """JSON has no word for what is not a number."""
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _of_solve(solved: Record) -> dict[str, Any]:
+    """Return the figures of the whole path, and of the analysis with a held tip, if there is one.
+
+    The blocked force is the one of its own last pressure.
+    """
+    figures = solved.figures
+    path = {key: figures.get(key) for key in ("deepest_penetration_mm", "limit_points")}
+    held = figures.get("blocked_force")
+    if not held:
+        return path
+    return path | {
+        "blocked_force_N": held["blocked_force_N"],
+        "blocked_force_pressure_kPa": held["pressure_kPa"],
+        "blocked_force_variant": held["variant"],
+        "blocked_force_status": held["status"],
+    }
+
+
+def _first_contact(solved: Record, history: Columns) -> float | None:
+    gap = history["smallest_gap_mm"].copy()
+    if np.isnan(gap[0]):
+        # Walls that are too far apart for the search still have a distance.
+        gap[0] = solved.figures.get("initial_gap_mm", np.nan)
+    return first_contact_pressure(history["pressure_kPa"], gap, ContactLaw().width)
+
+
+def _strains(solved: Record, ramp_kPa_per_s: float | None) -> Columns:
+    recorded = solved.figures["recorded"]
+    keys = ("pressure_kPa", "strain_max", "strain_p99")
+    pressure, largest, percentile = (np.array(recorded[key], np.float64) for key in keys)
+    return {**strain_columns(pressure, largest, percentile, ramp_kPa_per_s)}
+
+
+def _blocked(solve: Path, trajectory: Trajectory) -> Columns:
+    if not (solve / BLOCKED_NAME).is_file():
+        return {}
+    force = blocked_force_at(trajectory.pressure_kPa, read_table(solve / BLOCKED_NAME))
+    return {"blocked_force_N": force}
+
+
+def _kinds(geometry: Path | None) -> list[Kind] | None:
+    return kinds_of(read_design(geometry).design) if geometry else None
+
+
+def _write(
+    out: Path,
+    design_id: str,
+    trajectory: Trajectory,
+    measures: Columns,
+    kinds: list[Kind] | None,
+) -> None:
+    tables: dict[str, tuple[tuple[Column, ...], Columns]] = {
+        TRAJECTORY_NAME: (TRAJECTORY, trajectory.columns()),
+        CHAMBERS_NAME: (CHAMBERS, chamber_columns(trajectory, kinds)),
+        PERFORMANCE_NAME: (MEASURES, measures),
+    }
+    for name, (columns, data) in tables.items():
+        named = {"design_id": [design_id] * len(data["pressure_kPa"])}
+        write_table(out / name, columns, named | data)
 
 
 def _refuse_other_mesh(folders: Folders, mesh: Mesh, solved: Record) -> None:
@@ -147,10 +221,9 @@ def _refuse_other_mesh(folders: Folders, mesh: Mesh, solved: Record) -> None:
         )
 
 
-_STRAINS = ("strain_max", "strain_p99")
-
-
-def _trajectory(folders: Folders, mesh: Mesh, sections: int) -> Trajectory:
+def _trajectory(folders: Folders, solved: Record, sections: int) -> Trajectory:
+    mesh = read_msh(mesh_file(folders.mesh))
+    _refuse_other_mesh(folders, mesh, solved)
     placed = sections_of(mesh, _stations(folders.geometry, mesh, sections))
     states = read_states(folders.solve / STATES_NAME)
     return measure(placed, states.pressure_kPa, states.displacement)

@@ -26,7 +26,7 @@ def test_the_file_in_the_repository_holds_every_key_and_its_default() -> None:
 def test_defaults_are_those_of_the_library() -> None:
     defaults = config.load(None)
     assert rules_of(defaults) == GeometryRules()
-    assert defaults["metrics"] == asdict(Thresholds())
+    assert defaults["metrics"] == asdict(Thresholds()) | {"pressure_ramp_kPa_per_s": None}
     gate = {key: defaults["mesh"][key] for key in asdict(MeshGate())}
     assert gate == asdict(MeshGate())
     assert defaults["mesh"]["meshers"] == list(MESHERS)

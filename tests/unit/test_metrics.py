@@ -10,6 +10,7 @@ from pagd import metrics
 from pagd.design import Design
 from pagd.errors import InputError
 from pagd.metrics import Thresholds, energy_balance, measure, measured_mode, work_of_pressure
+from pagd.rotations import twist_angle
 from pagd.sections import Stations, even_stations, place_sections, stations_of
 
 LENGTH, WIDTH, LEVEL, JOINTS = 120.0, 15.0, -1.06, 12
@@ -132,7 +133,7 @@ def test_swing_twist_of_a_helix_mixes_bending_into_twist():
     assert found.swing_twist_deg[0] == pytest.approx(np.degrees(expected), abs=0.2)
     # Of one joint, a twelfth of it, both notions are the same to 0.5 %.
     joint = found.rotations[0, 4].T @ found.rotations[0, 5]
-    single = np.degrees(metrics.twist_angle(joint))
+    single = np.degrees(twist_angle(joint))
     assert single == pytest.approx(float(np.diff(found.twist_deg[0])[4]), rel=5e-3)
 
 
@@ -293,6 +294,8 @@ def test_performance_takes_the_recorded_steps_of_the_history():
         "pressure_kPa": steps,
         "cavity_volume_mm3": 100.0 + 10.0 * steps,
         "stored_energy_mJ": 5e-3 * steps**2 * 1.01,
+        "smallest_gap_mm": 2.0 - 0.5 * steps,
+        "recorded": np.isin(steps, found.pressure_kPa),
     }
     table = metrics.performance(found, history, solid_volume_mm3=20.0)
     np.testing.assert_allclose(table["work_mJ"], 5e-3 * np.array([1.0, 4.0, 9.0]))
@@ -301,8 +304,28 @@ def test_performance_takes_the_recorded_steps_of_the_history():
     np.testing.assert_allclose(table["cavity_volume_mm3"], [110.0, 120.0, 130.0])
     assert list(table["measured_mode"]) == ["bending"] * 3
     assert {len(column) for column in table.values()} == {3}
-    with pytest.raises(ValueError, match="no converged step at the recorded 3 kPa"):
+    np.testing.assert_allclose(table["smallest_gap_mm"], [1.5, 1.0, 0.5])
+    with pytest.raises(ValueError, match=r"\[1.0, 2.0\] kPa, the states at \[1.0, 2.0, 3.0\]"):
         metrics.performance(found, {k: v[:5] for k, v in history.items()}, 20.0)
+
+
+def test_states_are_found_by_their_mark_where_the_pressure_falls_and_comes_again():
+    points, faces = paper_mesh()
+    fields = np.array([screw(points, 0.0, 0.1 * p) for p in range(4)])
+    sections = place_sections(points, faces, even_stations(LENGTH, 5), mirrored=False)
+    found = measure(sections, np.array([0.0, 5.0, 10.0, 8.0]), fields)
+    history = {
+        "pressure_kPa": np.array([0.0, 5.0, 12.0, 9.0, 5.0, 10.0, 8.0]),
+        "cavity_volume_mm3": 1000.0 * np.arange(1.0, 8.0),
+        "stored_energy_mJ": np.arange(7.0),
+        "smallest_gap_mm": np.full(7, np.nan),
+        "recorded": np.array([True, True, False, False, False, True, True]),
+    }
+    table = metrics.performance(found, history, 20.0)
+    np.testing.assert_allclose(table["stored_energy_mJ"], [0.0, 1.0, 5.0, 6.0])
+    # Trapezoids along the path: 2.5 + 8.5 + 10.5 + 7 + 7.5 + 9 kPa times 1000 mm³.
+    np.testing.assert_allclose(table["work_mJ"], [0.0, 2.5, 36.0, 45.0])
+    assert found.bending_deg[-1, -1] == pytest.approx(np.degrees(0.3), rel=5e-3)
 
 
 def test_trajectory_table_has_a_row_a_pressure_and_station():

@@ -1,3 +1,4 @@
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,15 @@ def test_states_survive_the_file(states: States, tmp_path: Path) -> None:
     np.testing.assert_allclose(read.strain, states.strain, rtol=1e-7)
 
 
+def test_states_keep_the_order_of_the_path(states: States, tmp_path: Path) -> None:
+    """A path that is followed by its volume ends below, or comes to a pressure again."""
+    falling = dataclasses.replace(states, pressure_kPa=np.array([10.0, 5.0, 10.0]))
+    write_states(falling, tmp_path / "states.parquet")
+    read = read_states(tmp_path / "states.parquet")
+    np.testing.assert_array_equal(read.pressure_kPa, [10.0, 5.0, 10.0])
+    np.testing.assert_allclose(read.displacement, states.displacement, rtol=1e-7)
+
+
 def test_the_file_is_a_plain_table(states: States, tmp_path: Path) -> None:
     write_states(states, tmp_path / "states.parquet")
     table = read_table(tmp_path / "states.parquet")
@@ -31,7 +41,9 @@ def test_the_file_is_a_plain_table(states: States, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "nodes", [[0, 1, 0], [0, 1, 1, 0], [0, 1, 0, 2]], ids=["short", "order", "other"]
+    "nodes",
+    [[0, 1, 0], [0, 1, 1, 0], [0, 1, 0, 2], [0, 1, 2, 3]],
+    ids=["short", "order", "other", "two pressures"],
 )
 def test_states_of_different_nodes_are_refused(tmp_path: Path, nodes: list[int]) -> None:
     path = tmp_path / "states.parquet"

@@ -1,4 +1,4 @@
-"""What an actuator does under pressure: trajectory, bending, twist, work and mode.
+"""Where the sections are at every recorded pressure, and how far they have turned.
 
 Angles
 ------
@@ -32,9 +32,7 @@ no value where the tip points backwards (180°). It is given as `swing_twist_deg
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,39 +41,8 @@ from pagd.rotations import rotation_vector, swing_angle, twist_angle
 from pagd.sections import Sections, Stations
 
 FloatArray = NDArray[np.float64]
-MeasuredMode = Literal["bending", "twisting", "mixed", "none"]
 
-_ROUND_OFF_MJ = 1e-9
-
-__all__ = [
-    "MeasuredMode",
-    "Thresholds",
-    "Trajectory",
-    "energy_balance",
-    "is_still",
-    "measure",
-    "measured_mode",
-    "performance",
-    "work_density",
-    "work_of_pressure",
-]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Thresholds:
-    """What counts as moving and as twisting.
-
-    still_deg: an actuator that bends and twists less than this does not actuate.
-    joint_deg: a joint that turns less than this is left out of the mode.
-    twist_share: a joint twists if its |τ| is at least this share of its whole rotation |ω|.
-    mixed_share: the mode is mixed if at least this share of the joints twists, and at least this
-        share does not.
-    """
-
-    still_deg: float = 5.0
-    joint_deg: float = 0.2
-    twist_share: float = 0.15
-    mixed_share: float = 0.2
+__all__ = ["Trajectory", "measure"]
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -181,126 +148,6 @@ def measure(sections: Sections, pressure_kPa: FloatArray, displacement: FloatArr
         rotations=rotations,
         joints=_followed(joints),
     )
-
-
-def measured_mode(
-    bending_deg: FloatArray, twist_deg: FloatArray, thresholds: Thresholds = Thresholds()
-) -> MeasuredMode:
-    """Tell the mode of one state from the joints' own rotation.
-
-    Every joint that moves either twists or does not. All twist: "twisting"; none: "bending";
-    some of each: "mixed", the row has joints of both kinds. Slanted chambers bend AND twist:
-    that alone is not mixed.
-
-    Parameters
-    ----------
-    bending_deg, twist_deg
-        (s,) angles of the sections from the fixed end to the tip.
-    thresholds
-        What counts as moving, twisting and mixed.
-    """
-    if is_still(float(bending_deg[-1]), float(twist_deg[-1]), thresholds):
-        return "none"
-    twist, bending = np.abs(np.diff(twist_deg)), np.abs(np.diff(bending_deg))
-    whole = np.hypot(twist, bending)
-    moving = whole >= thresholds.joint_deg
-    share = float(np.mean(twist[moving] >= thresholds.twist_share * whole[moving]))
-    if share < thresholds.mixed_share:
-        return "bending"
-    return "twisting" if share > 1.0 - thresholds.mixed_share else "mixed"
-
-
-def is_still(bending_deg: float, twist_deg: float, thresholds: Thresholds = Thresholds()) -> bool:
-    """Tell whether bending and twist of the tip are both below the threshold: no actuation."""
-    return max(abs(bending_deg), abs(twist_deg)) < thresholds.still_deg
-
-
-def work_of_pressure(pressure_kPa: FloatArray, volume_mm3: FloatArray) -> FloatArray:
-    """Return the work so far (k,) in mJ, ∫ p dV along the converged steps by trapezoids.
-
-    Parameters
-    ----------
-    pressure_kPa, volume_mm3
-        (k,) pressure and cavity volume, from the unloaded state on.
-    """
-    steps = 0.5 * (pressure_kPa[1:] + pressure_kPa[:-1]) * np.diff(volume_mm3)
-    # 1 kPa mm³ = 1e-3 MPa mm³ = 1e-3 mJ.
-    return np.concatenate([[0.0], np.cumsum(steps)]) * 1e-3
-
-
-def energy_balance(work_mJ: FloatArray, stored_mJ: FloatArray) -> FloatArray:
-    """Return |∫ p dV − U| / U for the stored energy U, element by element.
-
-    Energies below 1e-9 mJ are round-off of an unloaded state: 0 there, and infinite for work that
-    nothing stores.
-    """
-    gap = np.abs(work_mJ - stored_mJ)
-    unloaded = np.where(gap > _ROUND_OFF_MJ, np.inf, 0.0)
-    return np.divide(gap, stored_mJ, out=unloaded, where=stored_mJ > _ROUND_OFF_MJ)
-
-
-def work_density(work_mJ: FloatArray, solid_volume_mm3: float) -> FloatArray:
-    """Return the work per volume of elastomer in kJ/m³; 1 mJ/mm³ is 1000 kJ/m³."""
-    return work_mJ / solid_volume_mm3 * 1e3
-
-
-def performance(
-    trajectory: Trajectory,
-    history: Mapping[str, NDArray[np.generic]],
-    solid_volume_mm3: float,
-    thresholds: Thresholds = Thresholds(),
-) -> dict[str, NDArray[np.generic]]:
-    """Return the table of performance: one row a recorded pressure.
-
-    Parameters
-    ----------
-    trajectory
-        The measured sections.
-    history
-        pressure_kPa, cavity_volume_mm3 and stored_energy_mJ, (k,) each, of every converged step
-        from the unloaded state on; the recorded pressures are among the steps.
-    solid_volume_mm3
-        Volume of elastomer of the body that `history` is about: for a half model, either both
-        are of the half or both of the whole.
-    thresholds
-        For the measured mode.
-    """
-    pressure = np.asarray(history["pressure_kPa"], dtype=np.float64)
-    volume = np.asarray(history["cavity_volume_mm3"], dtype=np.float64)
-    stored = np.asarray(history["stored_energy_mJ"], dtype=np.float64)
-    rows = _rows_at(pressure, trajectory.pressure_kPa)
-    work = work_of_pressure(pressure, volume)[rows]
-    x, y, z = trajectory.positions[:, -1].T
-    bending, twist = trajectory.bending_deg, trajectory.twist_deg
-    modes = [measured_mode(b, t, thresholds) for b, t in zip(bending, twist, strict=True)]
-    return {
-        "pressure_kPa": trajectory.pressure_kPa,
-        "bending_deg": bending[:, -1],
-        "twist_deg": twist[:, -1],
-        "sideways_deg": trajectory.sideways_deg[:, -1],
-        "swing_deg": trajectory.swing_deg,
-        "swing_twist_deg": trajectory.swing_twist_deg,
-        "chord_deg": trajectory.chord_deg,
-        "out_of_plane_mm": trajectory.out_of_plane_mm,
-        "tip_x_mm": x,
-        "tip_y_mm": y,
-        "tip_z_mm": z,
-        "measured_mode": np.array(modes),
-        "cavity_volume_mm3": volume[rows],
-        "work_mJ": work,
-        "stored_energy_mJ": stored[rows],
-        "energy_balance": energy_balance(work, stored[rows]),
-        "work_density_kJ_m3": work_density(work, solid_volume_mm3),
-    }
-
-
-def _rows_at(steps_kPa: FloatArray, recorded_kPa: FloatArray) -> NDArray[np.int64]:
-    """Return the step of each recorded pressure."""
-    rows = np.abs(steps_kPa - recorded_kPa[:, None]).argmin(axis=1)
-    off = np.abs(steps_kPa[rows] - recorded_kPa) > 1e-6 * np.maximum(1.0, recorded_kPa)
-    if off.any():
-        raise ValueError(f"no converged step at the recorded {recorded_kPa[off][0]:g} kPa")
-    return np.asarray(rows)
 
 
 def _followed(joints: FloatArray) -> FloatArray:
