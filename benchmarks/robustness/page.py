@@ -26,7 +26,8 @@ _FIGURES: Final = (
     ("processor time of the stages, s", "chain_cpu_s", ".1f"),
     ("unknowns", "unknowns", ",.0f"),
     ("memory, MB", "peak_memory_MB", ",.0f"),
-    ("penetration, % of the gap", "penetration_share", ".2%"),
+    ("penetration, free, % of the gap", "penetration_share", ".2%"),
+    ("penetration, blocked, % of the gap", "blocked_penetration_share", ".2%"),
     ("energy balance, %", "energy_balance", ".3%"),
 )
 
@@ -141,13 +142,14 @@ def _value(value: float, form: str) -> str:
 
 def _events(summary: Mapping[str, Any]) -> list[str]:
     contact, limits = summary["contact"], summary["limit_points"]
-    deepest = summary["spreads"]["penetration_share"]
+    shares = ("penetration_share", "blocked_penetration_share")
+    deepest = [spread["max"] for key in shares if (spread := summary["spreads"][key])]
     sentences = []
     if contact["known"]:
         sentences.append(f"Walls touch in {contact['touched']} of {contact['known']} designs.")
     if deepest:
         sentences.append(
-            f"The deepest penetration is {_percent(deepest['max'], 2)} of the gap; "
+            f"The deepest penetration is {_percent(max(deepest), 2)} of the gap; "
             f"{contact['over_limit']} designs exceed {_percent(PENETRATION_LIMIT, 0)}."
         )
     if limits["known"]:

@@ -44,6 +44,8 @@ class Result:
         How the blocked-force analysis ended.
     blocked_iterations, blocked_rejected, blocked_s
         What it took.
+    blocked_penetration_share
+        Its deepest penetration, by the initial gap.
     seconds
         Wall time of the process.
     cpu_s
@@ -52,7 +54,7 @@ class Result:
         Wall time by stage, and of starting the process.
     smallest_gap_mm, penetration_share, touched
         Smallest gap between walls at the end, negative if they overlap; deepest penetration by
-        the initial gap; whether walls have touched.
+        the initial gap; whether walls have touched: all of the free actuation.
     energy_balance
         Work of the pressure against stored energy, relative.
     limit_points
@@ -87,6 +89,7 @@ class Result:
     blocked_iterations: int | None = None
     blocked_rejected: int | None = None
     blocked_s: float | None = None
+    blocked_penetration_share: float | None = None
     smallest_gap_mm: float | None = None
     penetration_share: float | None = None
     touched: bool | None = None
@@ -153,29 +156,31 @@ def _free(records: Mapping[str, Record]) -> dict[str, Any]:
     figures = record.figures
     if "steps" not in figures:  # a stage before has failed
         return {"free_status": record.status.value}
-    blocked = figures.get("blocked_force") or {}
     return {
         "free_status": record.status.value,
         "pressure_kPa": figures["pressure_kPa"],
         "free_iterations": figures["newton_iterations"],
         "free_steps": figures["steps"],
         "free_rejected": figures["rejected_steps"],
-        "free_s": round(record.timings_s["wall"] - blocked.get("wall_s", 0.0), 3),
+        "free_s": record.timings_s.get("solve"),
         **{key: figures.get(key) for key in ("tets", "unknowns", "limit_points")},
     }
 
 
 def _blocked(records: Mapping[str, Record]) -> dict[str, Any]:
-    figures = records["solve"].figures.get("blocked_force") if "solve" in records else None
-    if not figures:
+    record = records.get("solve")
+    figures = record.figures.get("blocked_force") if record else None
+    if not (record and figures):
         return {}
+    depth, gap = figures.get("deepest_penetration_mm"), record.figures.get("initial_gap_mm")
     return {
         "blocked_status": figures["status"],
         "blocked_reason": figures.get("reason"),
         "blocked_pressure_kPa": figures.get("pressure_kPa"),
         "blocked_iterations": figures.get("newton_iterations"),
         "blocked_rejected": figures.get("rejected_steps"),
-        "blocked_s": figures.get("wall_s"),
+        "blocked_s": record.timings_s.get("blocked_force"),
+        "blocked_penetration_share": None if depth is None or gap is None else depth / gap,
     }
 
 

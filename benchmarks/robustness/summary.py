@@ -33,6 +33,7 @@ _SPREADS: Final[Mapping[str, Callable[[Result], float | None]]] = {
     "unknowns": lambda r: r.unknowns,
     "peak_memory_MB": lambda r: r.peak_memory_MB,
     "penetration_share": lambda r: r.penetration_share,
+    "blocked_penetration_share": lambda r: r.blocked_penetration_share,
     "energy_balance": lambda r: None if r.energy_balance is None else abs(r.energy_balance),
 }
 
@@ -110,7 +111,7 @@ def _stages(results: Sequence[Result]) -> dict[str, Any]:
 
 
 def _contact(results: Sequence[Result]) -> dict[str, int]:
-    shares = [r.penetration_share for r in results if r.penetration_share is not None]
+    shares = [max(r.penetration_share or 0, r.blocked_penetration_share or 0) for r in results]
     return {
         "known": sum(r.touched is not None for r in results),
         "touched": sum(bool(r.touched) for r in results),

@@ -46,6 +46,7 @@ SOLVED: dict[str, Any] = {
     "limit_points": 1,
     "smallest_gap_mm": -0.01,
     "penetration_share": 0.03,
+    "initial_gap_mm": 1.0,
     "blocked_force": {
         "variant": "edge",
         "status": "not_converged",
@@ -53,7 +54,7 @@ SOLVED: dict[str, Any] = {
         "pressure_kPa": 12.0,
         "newton_iterations": 40,
         "rejected_steps": 5,
-        "wall_s": 4.0,
+        "deepest_penetration_mm": 0.01,
     },
 }
 MEASURED = {"energy_balance": -0.001, "first_contact_pressure_kPa": 31.0}
@@ -88,6 +89,7 @@ def leave_records(
 ) -> None:
     """Write records of every stage, as a design leaves them."""
     figures = {"solve": SOLVED if solved is None else solved, "metrics": MEASURED}
+    parts = {"solve": {"solve": 3.0, "blocked_force": 0.5}}
     for number, stage in enumerate(STAGES, start=1):
         record = Record(
             stage=stage,
@@ -97,7 +99,7 @@ def leave_records(
             figures=figures.get(stage, {}),
             configuration={},
             versions={"pagd": "0", "stage": STAGE_VERSIONS[stage], "python": "3"},
-            timings_s={"wall": float(number), "cpu": 0.5},
+            timings_s={"wall": float(number), "cpu": 0.5, **parts.get(stage, {})},
             peak_memory_MB=100.0 * number,
         )
         (folder / stage).mkdir(parents=True, exist_ok=True)
@@ -162,11 +164,11 @@ def test_penetration_contact_and_limit_points_are_counted_where_they_are_known()
     results = [
         result(1, touched=True, penetration_share=0.021, limit_points=2),
         result(2, touched=True, penetration_share=0.02, limit_points=0),
-        result(3, touched=False, limit_points=0),
+        result(3, touched=False, blocked_penetration_share=0.03, limit_points=0),
         result(4),
     ]
     summary = summarize(results, 4)
-    assert summary["contact"] == {"known": 3, "touched": 2, "over_limit": 1}
+    assert summary["contact"] == {"known": 3, "touched": 2, "over_limit": 2}
     assert summary["limit_points"] == {"known": 3, "designs": 1, "limit_points": 2}
     assert summary["spreads"]["penetration_share"]["max"] == 0.021
 
@@ -181,11 +183,11 @@ def test_a_result_separates_both_analyses(tmp_path: Path) -> None:
         40,
         100,
     )
-    # The stage solve took 4 s, as its record says, all of it for the blocked force.
-    assert (found.free_s, found.blocked_s) == (0.0, 4.0)
+    assert (found.free_s, found.blocked_s) == (3.0, 0.5)
     assert found.stages_s["starting"] == 20.0 - (1 + 2 + 3 + 4 + 5)
     assert (found.cpu_s, found.peak_memory_MB) == (2.5, 500.0)
-    assert (found.touched, found.energy_balance, found.penetration_share) == (True, -0.001, 0.03)
+    assert (found.penetration_share, found.blocked_penetration_share) == (0.03, 0.01)
+    assert (found.touched, found.energy_balance) == (True, -0.001)
     assert found.goes_all_the_way
 
 
@@ -195,8 +197,8 @@ def test_a_result_does_without_blocked_force_and_contact(tmp_path: Path) -> None
     leave_records(tmp_path, named, {key: SOLVED[key] for key in kept})
     found = result_of(named, tmp_path, {"end": "finished", "seconds": 20.0})
     assert found.free_iterations == 60
-    assert found.free_s == 4.0
     assert (found.blocked_status, found.blocked_iterations, found.penetration_share) == (None,) * 3
+    assert (found.blocked_s, found.blocked_penetration_share) == (None, None)
 
 
 def test_a_design_without_a_mesh_has_no_analysis(tmp_path: Path) -> None:
@@ -374,7 +376,7 @@ def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
 
 
 def test_the_command_runs_a_design_once_and_reports_it(command: Command, tmp_path: Path) -> None:
-    config = {"solve": {"maximum_pressure_kPa": 0.5, "recorded_step_kPa": 0.5}}
+    config = {"solve": {"maximum_pressure_kPa": 0.25}}
     options = ["--designs", "1", "--size", "12", "--config", json.dumps(config)]
     options += ["--out", str(tmp_path / "out"), "--markdown", str(tmp_path / "page.md")]
     line, _, page = command(*options).partition("\n")
