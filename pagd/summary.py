@@ -1,4 +1,4 @@
-"""All designs together: one row a design, whatever became of it, and all trajectories."""
+"""All designs together: one row a design, whatever became of it, and what was measured of all."""
 
 from __future__ import annotations
 
@@ -10,12 +10,28 @@ from typing import Any
 
 from pagd.files import write_text
 from pagd.record import Record, read_record
-from pagd.tables import PERFORMANCE, TRAJECTORY, concatenate, write_rows
+from pagd.tables import (
+    CHAMBERS,
+    MEASURES,
+    PERFORMANCE,
+    TRAJECTORY,
+    Column,
+    concatenate,
+    write_rows,
+)
 
-__all__ = ["performance_row", "write_summary", "write_trajectories"]
+__all__ = ["FOR_PEOPLE", "GATHERED", "performance_row", "write_gathered", "write_summary"]
+
+#: Tables of all designs, the rows of which every design has in a table of its own: file of the
+#: summary, file in a folder of the stage metrics, columns.
+GATHERED: tuple[tuple[str, str, tuple[Column, ...]], ...] = (
+    ("by_pressure.parquet", "performance.parquet", MEASURES),
+    ("trajectories.parquet", "trajectory.parquet", TRAJECTORY),
+    ("chambers.parquet", "chambers.parquet", CHAMBERS),
+)
 
 #: Columns of the table for people: heading, key of the figures, format ('z': no minus zero).
-_FOR_PEOPLE = (
+FOR_PEOPLE = (
     ("origin", "origin", ""),
     ("mode drawn", "mode", ""),
     ("mode measured", "measured_mode", ""),
@@ -28,6 +44,8 @@ _FOR_PEOPLE = (
     ("tip x, mm", "tip_x_mm", "z.1f"),
     ("tip y, mm", "tip_y_mm", "z.1f"),
     ("tip z, mm", "tip_z_mm", "z.1f"),
+    ("blocked force, N", "blocked_force_N", "z.3f"),
+    ("first contact, kPa", "first_contact_pressure_kPa", ".1f"),
     ("energy balance", "energy_balance", "z.4f"),
     ("novelty", "novelty", ".3f"),
     ("time, s", "wall_s", ".1f"),
@@ -60,10 +78,19 @@ def write_summary(
     write_text(table, _for_people(records, rows))
 
 
-def write_trajectories(metrics: Sequence[Path], trajectories: Path) -> None:
-    """Gather the trajectories of all designs that have one, with the columns ``TRAJECTORY``."""
-    parts = [folder / "trajectory.parquet" for folder in metrics]
-    concatenate(trajectories, [part for part in parts if part.is_file()], TRAJECTORY)
+def write_gathered(metrics: Sequence[Path], out: Path) -> None:
+    """Gather what was measured of all designs, as far as it was: the tables ``GATHERED``.
+
+    Parameters
+    ----------
+    metrics
+        Folders of the stage metrics, one a design, in the order of the rows.
+    out
+        Folder of the tables.
+    """
+    for name, own, columns in GATHERED:
+        parts = [folder / own for folder in metrics]
+        concatenate(out / name, [part for part in parts if part.is_file()], columns)
 
 
 def performance_row(record: Record) -> dict[str, Any]:
@@ -87,10 +114,10 @@ def performance_row(record: Record) -> dict[str, Any]:
 def _for_people(records: Sequence[Record], rows: Sequence[Mapping[str, Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["design", *(heading for heading, _, _ in _FOR_PEOPLE), "status", "reason"])
+    writer.writerow(["design", *(heading for heading, _, _ in FOR_PEOPLE), "status", "reason"])
     for record, row in zip(records, rows, strict=True):
         figures = {**record.figures, **row}
-        cells = [_cell(figures.get(key), form) for _, key, form in _FOR_PEOPLE]
+        cells = [_cell(figures.get(key), form) for _, key, form in FOR_PEOPLE]
         writer.writerow([record.design_id, *cells, record.status.value, record.reason or ""])
     return text.getvalue()
 

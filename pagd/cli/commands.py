@@ -124,7 +124,7 @@ def figures(options: Namespace) -> int:
 def summary(options: Namespace) -> int:
     """Write the tables of designs, of those that came as far as the metrics."""
     from pagd.record import RECORD_NAME
-    from pagd.summary import write_summary, write_trajectories
+    from pagd.summary import write_gathered, write_summary
 
     folders = options.design_folders
     there = [folder for folder in folders if (folder / "metrics" / RECORD_NAME).is_file()]
@@ -136,7 +136,7 @@ def summary(options: Namespace) -> int:
         novelty = novelty_of([folder / "geometry" for folder in there], options.dataset)
     performance, table = options.out / "performance.parquet", options.out / "summary.csv"
     write_summary(measured, performance, table, novelty)
-    write_trajectories(measured, options.out / "trajectories.parquet")
+    write_gathered(measured, options.out)
     print(f"{len(measured)} of {len(folders)} designs have a record of their metrics.")
     return 0
 

@@ -6,8 +6,8 @@ import pytest
 
 from pagd.errors import Status
 from pagd.record import Record, versions, write_record
-from pagd.summary import write_summary, write_trajectories
-from pagd.tables import PERFORMANCE, TRAJECTORY, read_rows, write_table
+from pagd.summary import GATHERED, write_gathered, write_summary
+from pagd.tables import PERFORMANCE, read_rows, write_table
 
 COST = {"cpu_s": 10.0, "wall_s": 6.0, "peak_memory_MB": 300.0}
 MEASURED = COST | {
@@ -16,6 +16,7 @@ MEASURED = COST | {
     "tip_y_mm": -0.01, "tip_z_mm": -76.9, "work_density_kJ_m3": 2.1, "strain_p99": 0.2,
     "energy_balance": -4e-6, "tets": 5825, "unknowns": 34813, "newton_iterations": 34,
     "material": "elastosil_m4601", "size_mm": 5.0, "chord_deg": 39.3,
+    "blocked_force_N": 1.23456, "first_contact_pressure_kPa": None, "limit_points": 0,
 }  # fmt: skip
 
 
@@ -41,8 +42,8 @@ def folder(root: Path, name: str, figures: dict[str, Any], reason: str | None = 
 def folders(tmp_path: Path) -> list[Path]:
     """A design that was measured, one that could not be meshed, and a mesh without a design."""
     good = folder(tmp_path, "good", MEASURED)
-    table = {"design_id": ["good"], "pressure_kPa": [50.0], "station": [0]}
-    write_table(good / "trajectory.parquet", TRAJECTORY, table)
+    for _, own, columns in GATHERED:
+        write_table(good / own, columns, {"design_id": ["good"], "pressure_kPa": [50.0]})
     failed = {"name": "bad", "origin": "own", "mode": "mixed"}
     own = {key: value for key, value in MEASURED.items() if key not in ("name", "origin", "mode")}
     return [
@@ -75,6 +76,8 @@ def test_the_table_for_people(folders: list[Path], tmp_path: Path) -> None:
     assert rows["good"]["bending, °"] == "78.1"
     assert rows["good"]["tip y, mm"] == "0.0"
     assert rows["good"]["energy balance"] == "0.0000"
+    assert rows["good"]["blocked force, N"] == "1.235"
+    assert rows["good"]["first contact, kPa"] == ""
     assert {row["time, s"] for row in rows.values()} == {"6.5"}
     assert rows["good"]["mesh size, mm"] == "5"
     assert rows["good"]["material"] == "elastosil_m4601"
@@ -95,12 +98,18 @@ def test_novelty_of_those_that_have_one(folders: list[Path], tmp_path: Path) -> 
     }  # fmt: skip
 
 
-def test_trajectories_of_those_that_have_one(folders: list[Path], tmp_path: Path) -> None:
-    write_trajectories(folders, tmp_path / "t.parquet")
-    assert [row["design_id"] for row in read_rows(tmp_path / "t.parquet")] == ["good"]
+def test_what_was_measured_of_those_that_have_it(folders: list[Path], tmp_path: Path) -> None:
+    write_gathered(folders, tmp_path / "all")
+    assert len(GATHERED) == 3
+    for name, own, columns in GATHERED:
+        rows = read_rows(tmp_path / "all" / name)
+        assert rows == read_rows(folders[1] / own)
+        assert [row["design_id"] for row in rows] == ["good"]
+        assert list(rows[0]) == [column.name for column in columns]
 
 
 def test_nothing_gives_empty_tables(tmp_path: Path) -> None:
     write_summary([], tmp_path / "p.parquet", tmp_path / "s.csv")
-    write_trajectories([], tmp_path / "t.parquet")
-    assert read_rows(tmp_path / "p.parquet") == read_rows(tmp_path / "t.parquet") == []
+    write_gathered([], tmp_path)
+    for name in ("p.parquet", *(name for name, _, _ in GATHERED)):
+        assert read_rows(tmp_path / name) == []

@@ -22,6 +22,8 @@ from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
 GATHERED = {
     "summary/performance.parquet",
+    "summary/by_pressure.parquet",
+    "summary/chambers.parquet",
     "summary/trajectories.parquet",
     "summary/summary.csv",
     "figures/together",
@@ -84,7 +86,15 @@ def test_the_summary_holds_failed_designs_too(finished: Project) -> None:
         assert row["tip_z_mm"] < 0
         assert row["energy_balance"] < 0.01
         assert row["wall_s"] > 0
-        assert row["blocked_force_N"] is None
+        assert row["blocked_force_N"] > 0
+        assert row["blocked_force_pressure_kPa"] == 4.0
+        assert (row["blocked_force_variant"], row["blocked_force_status"]) == ("edge", "ok")
+        # So little pressure brings no chambers together.
+        assert row["first_contact_pressure_kPa"] is None
+        assert row["deepest_penetration_mm"] == 0.0
+        assert row["limit_points"] == 0
+        assert row["strain_rate_per_kPa"] == pytest.approx(row["strain_p99"] / 4.0, rel=0.05)
+        assert row["strain_rate_per_s"] is None
     assert abs(rows["slanted"]["twist_deg"]) > 10 * abs(rows["straight"]["twist_deg"])
     assert units(path)["work_density_kJ_m3"] == "kJ/m³"
 
@@ -98,6 +108,22 @@ def test_trajectories_hold_every_station_at_every_pressure(finished: Project) ->
         for pressure in (0.0, 2.0, 4.0)
         for station in range(3)
     }
+
+
+def test_every_pressure_and_chamber_of_all_designs(finished: Project) -> None:
+    rows = read_rows(finished / "summary/by_pressure.parquet")
+    found = [(row["design_id"], row["pressure_kPa"]) for row in rows]
+    assert found == [(name, p) for name in ("straight", "slanted") for p in (0.0, 2.0, 4.0)]
+    assert all(row["blocked_force_N"] > 0 for row in rows if row["pressure_kPa"] > 0)
+    assert all(row["smallest_gap_mm"] > 1.5 for row in rows)
+    chambers = read_rows(finished / "summary/chambers.parquet")
+    assert [row["chamber"] for row in chambers] == [1, 2] * len(rows)
+    assert {(row["design_id"], row["kind"]) for row in chambers} == {
+        ("straight", "straight"), ("slanted", "helical")
+    }  # fmt: skip
+    for whole, *both in zip(rows, chambers[::2], chambers[1::2], strict=True):
+        for angle in ("bending_deg", "twist_deg"):
+            assert sum(row[angle] for row in both) == pytest.approx(whole[angle], abs=1e-9)
 
 
 def test_without_a_selection_there_is_no_generative_half(finished: Project) -> None:

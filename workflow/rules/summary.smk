@@ -1,9 +1,11 @@
-# All designs together: one row a design, whatever became of it.
+# All designs together: one row a design, whatever became of it, and what was measured of all.
 
 
 rule summary:
     input:
         "results/summary/performance.parquet",
+        "results/summary/by_pressure.parquet",
+        "results/summary/chambers.parquet",
         "results/summary/trajectories.parquet",
         "results/summary/summary.csv",
         of_generative_half("results/summary/diversity.json"),
@@ -18,6 +20,8 @@ rule summary_tables:
         dataset=of_generative_half(rules.dataset.output.dataset),
     output:
         performance="results/summary/performance.parquet",
+        by_pressure="results/summary/by_pressure.parquet",
+        chambers="results/summary/chambers.parquet",
         trajectories="results/summary/trajectories.parquet",
         table=report(
             "results/summary/summary.csv",
@@ -35,6 +39,6 @@ rule summary_tables:
     params:
         version=STAGE_VERSIONS["summary"],
     message:
-        "Gather performance and trajectories of all designs."
+        "Gather performance, chambers and trajectories of all designs."
     script:
         "../scripts/summary.py"

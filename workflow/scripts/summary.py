@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from pagd.stages.novelty import novelty_of
-from pagd.summary import write_summary, write_trajectories
+from pagd.summary import write_gathered, write_summary
 
 
 def main(
@@ -12,13 +12,12 @@ def main(
     metrics: list[Path],
     dataset: Path | None,
     performance: Path,
-    trajectories: Path,
     table: Path,
 ) -> None:
     """Write the tables of all designs, with their novelty where there is a data set."""
     novelty = novelty_of(geometry, dataset) if dataset else {}
     write_summary(metrics, performance, table, novelty)
-    write_trajectories(metrics, trajectories)
+    write_gathered(metrics, performance.parent)
 
 
 if "snakemake" in globals():
@@ -29,6 +28,5 @@ if "snakemake" in globals():
         # None or one: a run without the generative half has no data set.
         dataset=next(map(Path, snakemake.input.dataset), None),
         performance=Path(snakemake.output.performance),
-        trajectories=Path(snakemake.output.trajectories),
         table=Path(snakemake.output.table),
     )
