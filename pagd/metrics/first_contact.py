@@ -19,7 +19,7 @@ def first_contact_pressure(
     close. The gap of the last two steps before that is therefore extended in a straight line to
     zero. Two bounds keep the answer between the steps: not before the last step that nothing
     pushed, and not after the first pushed step, or, where that one still has a gap, after the
-    zero of the line through these two.
+    zero of the line through these two. The error is of second order in the steps.
 
     Parameters
     ----------
