@@ -15,6 +15,12 @@ ALTERNATIVES: Final[Mapping[str, str]] = {
     "gallery": "All simulated actuators side by side, deformed and coloured by strain",
     "trajectories": "Paths of the tips and centre lines of all simulated actuators",
     "angles": "Curves of bending and twist against pressure, and of every chamber",
+    "forces": "Curves of blocked force against pressure of all simulated actuators",
+    "pressure_volume": "Curve of pressure against cavity volume, with the recorded states",
+    "contact": "Curve of the smallest gap between walls against pressure, and view of the deformed"
+    " actuator with the places where walls touch",
+    "blocked_force": "Curve of blocked force against pressure, and views of the actuator free and"
+    " held",
     "embedding": "Two scatter plots of the training designs in the plane: by category, by origin",
     "mixture": "Scatter plot of the generated designs in the plane with the Gaussians' ellipses,"
     " curve of the information criterion, histogram of the share of helical chambers",
@@ -24,6 +30,7 @@ ALTERNATIVES: Final[Mapping[str, str]] = {
     "feasibility": "Bars of how the simulated designs ended, by mode and by origin, and table of"
     " modes drawn against modes measured",
     "bending_twist": "Scatter plot of bending against twist of all simulated designs, by mode",
+    "force_bending": "Scatter plot of blocked force against bending of all simulated designs",
     "novelty_performance": "Scatter plots of performance against novelty of all simulated designs",
 }
 

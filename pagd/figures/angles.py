@@ -86,7 +86,7 @@ def _draw_joints(
         joints = np.diff(angles[-1])
         axes.plot(np.arange(1, len(joints) + 1), joints, "o-", color=colours[name], markersize=4)
     axes.set(
-        title=f"{word} of each chamber at the highest pressure",
+        title=f"{word} of each chamber at the last pressure",
         xlabel="chamber, from the fixed end",
         ylabel="degrees",
     )

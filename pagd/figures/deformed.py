@@ -1,4 +1,4 @@
-"""Picture of a design's deformed shapes at rising pressure, coloured by strain."""
+"""Picture of a design's deformed shapes under pressure, coloured by strain."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def deformed_figure(title: str, shapes: Shapes) -> Figure:
         axes.imshow(ghost)
         axes.imshow(shapes.picture(int(state), VIEW, box, scale, top))
         axes.set_title(kilopascals(shapes.pressure_kPa[state]))
-    figure.suptitle(f"{title}: deformed shapes at rising pressure", fontweight="bold")
+    figure.suptitle(f"{title}: deformed shapes under pressure", fontweight="bold")
     add_strain_bar(figure, list(panels.flat), top)
     draw_triad(figure, VIEW)
     return figure
@@ -140,12 +140,13 @@ def add_strain_bar(figure: Figure, axes: Sequence[Axes], top: float) -> None:
     bar.outline.set_edgecolor(INK)
 
 
-def draw_triad(figure: Figure, camera: Camera, length: float = 24.0, height: float = 0.1) -> None:
-    """Draw the directions x, y and z, `length` points long, at the figure's lower left corner.
+def draw_triad(figure: Figure, camera: Camera, left: float = 0.01, height: float = 0.1) -> None:
+    """Draw the directions x, y and z at the lower edge of the figure.
 
-    The lowest `height` of the figure is theirs.
+    They begin at `left`, a share of its width; the lowest `height` of the figure is theirs.
     """
-    axes = figure.add_axes((0.01, 0.2 * height, 0.08, height))
+    length = 24.0  # points
+    axes = figure.add_axes((left, 0.2 * height, 0.08, height))
     axes.set_axis_off()
     for image, name in zip(length * camera.project(np.eye(3)), "xyz", strict=True):
         axes.annotate(
@@ -162,7 +163,10 @@ def draw_triad(figure: Figure, camera: Camera, length: float = 24.0, height: flo
 
 
 def _chosen(pressure_kPa: FloatArray) -> IntArray:
-    """Return the states to draw: the unloaded one, the last, and evenly spaced ones between."""
-    count = min(_MOST, len(pressure_kPa))
-    wanted = np.linspace(pressure_kPa[0], pressure_kPa[-1], count)
-    return np.unique(np.abs(pressure_kPa - wanted[:, None]).argmin(axis=1))
+    """Return the states to draw: the unloaded one, the last, and evenly spaced ones between.
+
+    Spaced by the way that the pressure has gone, up or, past a limit point, down.
+    """
+    way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(pressure_kPa)))])
+    wanted = np.linspace(0.0, way[-1], min(_MOST, len(way)))
+    return np.unique(np.abs(way - wanted[:, None]).argmin(axis=1))

@@ -31,7 +31,7 @@ _MARGIN, _CAPTION = 6.0, 9.0
 
 
 def draw_side_by_side(design_folders: Sequence[Path], out: Path) -> None:
-    """Draw solved designs at their highest pressure to one SVG file, on one scale.
+    """Draw solved designs at their last pressure to one SVG file, on one scale.
 
     Those of Table 2 if there are any, or all. Colours are the strain, as in the other pictures.
     Raises ``InputError`` if no design was solved.

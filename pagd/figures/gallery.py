@@ -1,4 +1,4 @@
-"""Picture of many designs in rows, each deformed at the highest pressure it reached."""
+"""Picture of many designs in rows, each deformed at the last pressure it reached."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def gallery_figure(rows: Sequence[tuple[str, Sequence[Tile]]]) -> Figure:
 
 
 def caption(folder: Path) -> str:
-    """Return bending and twist of the tip at the highest pressure, or nothing."""
+    """Return bending and twist of the tip at the last pressure, or nothing."""
     if not has_trajectory(folder):
         return ""
     path = load_trajectory(folder)

@@ -23,9 +23,17 @@ __all__ = [
     "STAGES",
     "Path3D",
     "States",
+    "Steps",
+    "has_blocked_force",
+    "has_blocked_states",
+    "has_contact",
+    "has_history",
     "has_states",
     "has_trajectory",
+    "load_blocked_force",
+    "load_blocked_states",
     "load_design",
+    "load_history",
     "load_mesh",
     "load_records",
     "load_states",
@@ -35,6 +43,8 @@ __all__ = [
 
 #: Folders of a design, in the order the stages run.
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics")
+# In the folder of the stage solve: steps of the free actuation, and with a held tip.
+_FREE, _BLOCKED = "history.parquet", "blocked_force.parquet"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,7 +52,7 @@ class States:
     """Deformed states of one design, the unloaded one first.
 
     mesh: the mesh they are on.
-    pressure_kPa: (p,) rising, from 0.
+    pressure_kPa: (p,) from 0, in the order of the path: past a limit point it falls.
     displacement: (p, n, 3) in mm.
     strain: (p, n) largest principal logarithmic strain.
     """
@@ -57,7 +67,7 @@ class States:
 class Path3D:
     """Trajectory of one design: s stations at p pressures, the unloaded state first.
 
-    pressure_kPa: (p,) rising, from 0.
+    pressure_kPa: (p,) from 0, in the order of the path: past a limit point it falls.
     positions: (p, s, 3) in mm; bending_deg, twist_deg: (p, s).
     """
 
@@ -65,6 +75,24 @@ class Path3D:
     positions: FloatArray
     bending_deg: FloatArray
     twist_deg: FloatArray
+
+
+@dataclass(frozen=True, eq=False, slots=True, kw_only=True)
+class Steps:
+    """Converged steps of one analysis, the unloaded state first, in the order of the path.
+
+    pressure_kPa, cavity_volume_mm3, work_mJ: (k,) of the whole actuator.
+    recorded: (k,) whether the state was kept.
+    smallest_gap_mm: (k,) between walls, negative for a penetration; NaN where none are near.
+    blocked_force_N: (k,) on the support; None of a free actuation.
+    """
+
+    pressure_kPa: FloatArray
+    cavity_volume_mm3: FloatArray
+    work_mJ: FloatArray
+    recorded: NDArray[np.bool_]
+    smallest_gap_mm: FloatArray
+    blocked_force_N: FloatArray | None = None
 
 
 def load_records(folder: Path) -> dict[str, Record]:
@@ -109,31 +137,86 @@ def has_trajectory(folder: Path) -> bool:
     return (folder / "metrics" / "trajectory.parquet").is_file()
 
 
+def has_history(folder: Path) -> bool:
+    """Tell whether the steps of the free actuation are there."""
+    return (folder / "solve" / _FREE).is_file()
+
+
+def has_blocked_force(folder: Path) -> bool:
+    """Tell whether the design was also solved with its tip held."""
+    return (folder / "solve" / _BLOCKED).is_file()
+
+
+def has_blocked_states(folder: Path) -> bool:
+    """Tell whether there are deformed states both free and with the tip held."""
+    return has_states(folder) and (folder / "solve" / "blocked_states.parquet").is_file()
+
+
+def has_contact(folder: Path) -> bool:
+    """Tell whether walls could press each other apart in the analysis of a design."""
+    solved = load_records(folder).get("solve")
+    return bool(solved and solved.configuration.get("solve", {}).get("contact"))
+
+
 def load_states(folder: Path) -> States:
-    """Return the mesh and the deformed states of a design.
+    """Return the mesh and the deformed states of a design under free actuation.
 
     Raises
     ------
     InputError
         If a file is missing, or mesh and states do not belong together.
     """
+    return _states_in(folder, "states.parquet")
+
+
+def load_blocked_states(folder: Path) -> States:
+    """Return the deformed states of a design whose tip is held; see :func:`load_states`."""
+    return _states_in(folder, "blocked_states.parquet")
+
+
+def load_history(folder: Path) -> Steps:
+    """Return the steps of the free actuation; InputError if there are none."""
+    return _steps_in(folder / "solve" / _FREE)
+
+
+def load_blocked_force(folder: Path) -> Steps:
+    """Return the steps of the analysis with a held tip; InputError if there are none."""
+    return _steps_in(folder / "solve" / _BLOCKED)
+
+
+def load_trajectory(folder: Path) -> Path3D:
+    """Return the trajectory of a design; InputError if there is none.
+
+    The rows of every station are in the order of the path, in which a pressure may come twice.
+    """
+    table = read_table(folder / "metrics" / "trajectory.parquet")
+    order = np.argsort(table["station"], kind="stable")
+    shape = (len(np.unique(table["station"])), -1)
+    column = {name: values[order].reshape(shape).T for name, values in table.items()}
+    positions = np.stack([column[f"{axis}_mm"] for axis in "xyz"], axis=-1)
+    pressure = column["pressure_kPa"][:, 0]
+    return Path3D(pressure, positions, column["bending_deg"], column["twist_deg"])
+
+
+def _states_in(folder: Path, name: str) -> States:
     mesh = load_mesh(folder)
-    path = folder / "solve" / "states.parquet"
+    path = folder / "solve" / name
     found = read_states(path)
     if found.strain.shape[1:] != mesh.points.shape[:1]:
         raise InputError(f"{path}: does not hold one row for each of {len(mesh.points)} nodes.")
     return _from_zero(States(mesh, found.pressure_kPa, found.displacement, found.strain))
 
 
-def load_trajectory(folder: Path) -> Path3D:
-    """Return the trajectory of a design; InputError if there is none."""
-    table = read_table(folder / "metrics" / "trajectory.parquet")
-    pressure = np.unique(table["pressure_kPa"])
-    shape = (len(pressure), -1)
-    order = np.lexsort((table["station"], table["pressure_kPa"]))
-    column = {name: values[order].reshape(shape) for name, values in table.items()}
-    positions = np.stack([column[f"{axis}_mm"] for axis in "xyz"], axis=-1)
-    return Path3D(pressure, positions, column["bending_deg"], column["twist_deg"])
+def _steps_in(path: Path) -> Steps:
+    table = read_table(path)
+    return Steps(
+        pressure_kPa=table["pressure_kPa"],
+        cavity_volume_mm3=table["cavity_volume_mm3"],
+        work_mJ=table["work_mJ"],
+        recorded=table["recorded"].astype(np.bool_),
+        smallest_gap_mm=table["smallest_gap_mm"].astype(np.float64),
+        blocked_force_N=table.get("blocked_force_N"),
+    )
 
 
 def _from_zero(states: States) -> States:

@@ -114,7 +114,7 @@ def _twist(path: Path3D) -> FloatArray:
 
 
 def _draw_path(axes: Axes, member: Member, axis: int) -> None:
-    """Draw the way of the tip and the centre line at the highest pressure."""
+    """Draw the way of the tip and the centre line at the last pressure."""
     colour, dash, _ = member.line
     positions = member.path.positions
     x, y = positions[-1, :, 0], positions[-1, :, axis]

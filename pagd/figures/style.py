@@ -16,10 +16,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BASE",
+    "BLOCKED",
     "CAVITY",
     "CUT",
     "ELASTOMER",
     "FAINT",
+    "FREE",
     "INK",
     "MODE_LOOKS",
     "ORIGIN_COLOURS",
@@ -53,6 +55,8 @@ PAPER = "#f0b429"
 STRAIN_COLOURS = ("#f3ecdc", "#f7cf86", "#f0863f", "#c4303f", "#64123f")
 STRAIN_MAP = LinearSegmentedColormap.from_list("strain", STRAIN_COLOURS)
 PRESSURE_MAP = "viridis"
+# The two analyses of a design: free actuation, and with a held tip.
+FREE, BLOCKED = "#0072b2", "#d55e00"
 STRAIN_LABEL = "largest principal logarithmic strain"
 
 # Okabe and Ito's colours, which also readers with a colour deficiency tell apart.

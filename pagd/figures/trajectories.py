@@ -65,7 +65,7 @@ def trajectories_figure(paths: Mapping[str, Path3D]) -> Figure:
     both = figure.subfigures(2, 1, height_ratios=[1.0, 1.3], squeeze=False)
     upper, lower = both[0, 0], both[1, 0]
     panels = upper.subplots(1, len(paths), squeeze=False, sharex=True, sharey=True)[0]
-    limit = max(float(path.pressure_kPa[-1]) for path in paths.values())
+    limit = max(float(path.pressure_kPa.max()) for path in paths.values())
     for axes, (name, path) in zip(panels, paths.items(), strict=True):
         _draw_side(axes, path, colours[name], limit)
         axes.set_title(f"{name}: centre line from the side", color=colours[name])
@@ -116,7 +116,7 @@ def _draw_tips(
     front.set_title("tips from the front")
     legend = [f"{name}, to {kilopascals(path.pressure_kPa[-1])}" for name, path in paths.items()]
     figure.legend(side.lines, legend, loc="outside lower left", ncols=min(len(legend), _IN_A_ROW))
-    space.set_title("tips (thick) and centre lines at the highest pressure")
+    space.set_title("tips (thick) and centre lines at the last pressure")
     _equal_box(space, paths)
 
 

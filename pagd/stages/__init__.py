@@ -17,8 +17,8 @@ STAGE_VERSIONS = {
     "mesh": 1,
     "solve": 3,
     "metrics": 2,
-    "figures": 2,
-    "generative_figures": 1,
+    "figures": 3,
+    "generative_figures": 2,
     "summary": 3,
-    "report": 3,
+    "report": 4,
 }

@@ -7,10 +7,20 @@ from pathlib import Path
 from typing import Any
 
 from pagd.errors import InputError
+from pagd.figures.blocked import draw_blocked_force
+from pagd.figures.contact import draw_contact
 from pagd.figures.deformed import draw_deformed
 from pagd.figures.geometry import draw_geometry
-from pagd.figures.load import has_states, load_records, stl_paths
+from pagd.figures.load import (
+    has_blocked_force,
+    has_contact,
+    has_history,
+    has_states,
+    load_records,
+    stl_paths,
+)
 from pagd.figures.mesh import draw_mesh
+from pagd.figures.pressure_volume import draw_pressure_volume
 from pagd.figures.style import set_resolution
 from pagd.record import Meter, Record
 from pagd.stages.mesh import MESH_NAME
@@ -20,7 +30,10 @@ __all__ = ["run"]
 
 
 def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
-    """Draw geometry.png, mesh.png and deformed.png; a design that failed has fewer.
+    """Draw what there is of a design: one that failed has fewer pictures.
+
+    They are geometry.png, mesh.png, deformed.png and pressure_volume.png; contact.png unless
+    contact was off; blocked_force.png unless none was asked for.
 
     Parameters
     ----------
@@ -58,9 +71,13 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
 
 def _drawable(design: Path) -> dict[str, Any]:
     """Return what can be drawn: name of the picture to function(design folder, file)."""
+    solved = has_states(design) and has_history(design)
     there = {
         "geometry": (stl_paths(design) is not None, draw_geometry),
         "mesh": ((design / "mesh" / MESH_NAME).is_file(), draw_mesh),
         "deformed": (has_states(design), draw_deformed),
+        "pressure_volume": (solved, draw_pressure_volume),
+        "contact": (solved and has_contact(design), draw_contact),
+        "blocked_force": (has_blocked_force(design), draw_blocked_force),
     }
     return {name: draw for name, (found, draw) in there.items() if found}

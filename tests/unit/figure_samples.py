@@ -1,5 +1,7 @@
 """Solved designs without a solver: blocks bent to arcs, and the files their stages leave."""
 
+import dataclasses
+
 import numpy as np
 
 from pagd.errors import Status
@@ -10,7 +12,7 @@ from pagd.mesh.primitives import hollow_block
 from pagd.record import Record, versions, write_record
 from pagd.states import States as SolvedStates
 from pagd.states import write_states
-from pagd.tables import TRAJECTORY, write_table
+from pagd.tables import BLOCKED, HISTORY, TRAJECTORY, write_table
 
 SIZE = (20.0, 5.0, 6.0)
 PRESSURE = np.array([10.0, 20.0, 30.0])
@@ -38,7 +40,9 @@ def states_of(mesh):
     return States(mesh, np.array([0.0, *PRESSURE]), moved, strain)
 
 
-def solved(folder, half=False, status=Status.ok, reason=None, **figures):
+def solved(
+    folder, half=False, status=Status.ok, reason=None, contact=True, support="edge", **figures
+):
     """Leave what the stages mesh, solve and metrics leave for one design."""
     mesh = block(half)
     for stage in ("mesh", "solve", "metrics"):
@@ -51,11 +55,62 @@ def solved(folder, half=False, status=Status.ok, reason=None, **figures):
         strain=recorded.strain[1:],
     )
     write_states(kept, folder / "solve" / "states.parquet")
+    write_table(folder / "solve" / "history.parquet", HISTORY, steps(contact))
+    if support != "none":
+        held(folder, kept, contact)
+    write_record(solve_record(folder.name, contact, support), folder / "solve")
     write_table(folder / "metrics" / "trajectory.parquet", TRAJECTORY, trajectory(folder.name))
     known = {"bending_deg": 34.4, "tip_z_mm": -5.25, "tets": len(mesh.tets), "mode": "bending"}
     written = record(folder.name, "metrics", status, reason, {**known, **figures})
     write_record(written, folder / "metrics")
     return folder
+
+
+# Steps: the unloaded state, one between, and the recorded ones.
+STEPS = np.array([0.0, 5.0, *PRESSURE])
+FORCE = 0.02 * STEPS + 1e-4 * STEPS**2
+
+
+def steps(contact=True, pressure=STEPS):
+    """Columns of a history whose gap closes between 20 and 30 kPa."""
+    volume = 1000.0 + 20.0 * STEPS
+    gap = np.where(STEPS < 5.0, np.nan, 0.2 - 0.007 * STEPS)
+    work = np.concatenate([[0.0], np.cumsum((pressure[1:] + pressure[:-1]) / 2 * np.diff(volume))])
+    return {
+        "pressure_kPa": pressure,
+        "cavity_volume_mm3": volume,
+        "stored_energy_mJ": 1e-3 * work,
+        "work_mJ": 1e-3 * work,
+        "newton_iterations": np.full(len(STEPS), 3, dtype=np.int32),
+        "recorded": STEPS != 5.0,
+        "smallest_gap_mm": gap if contact else np.full(len(STEPS), np.nan),
+    }
+
+
+def held(folder, free, contact):
+    """Leave what the analysis with a held tip leaves: it bends less than half as far."""
+    kept = SolvedStates(
+        pressure_kPa=free.pressure_kPa, displacement=0.4 * free.displacement, strain=free.strain
+    )
+    write_states(kept, folder / "solve" / "blocked_states.parquet")
+    table = {**steps(contact), "blocked_force_N": FORCE}
+    write_table(folder / "solve" / "blocked_force.parquet", BLOCKED, table)
+
+
+def solve_record(name, contact=True, support="edge", **figures):
+    """Record of the stage solve; walls press each other by up to a twentieth of the gap."""
+    touching = {"deepest_penetration_mm": 0.01, "penetration_share": 0.05} if contact else {}
+    ending = {
+        "variant": support,
+        "status": "ok",
+        "reason": None,
+        "pressure_kPa": 30.0,
+        "blocked_force_N": 0.69,
+    }
+    blocked = {} if support == "none" else {"blocked_force": ending}
+    made = record(name, "solve", figures={**touching, **blocked, "limit_points": 0, **figures})
+    settings = {"solve": {"contact": contact, "blocked_force": support}}
+    return dataclasses.replace(made, configuration=settings)
 
 
 def path_only(folder, **figures):

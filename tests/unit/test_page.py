@@ -147,7 +147,7 @@ def test_page_tells_of_every_design(page):
     assert text.count('class="shape-data"') == 2
     assert text.count('" open><summary>') == 3
     # What there is nothing of has no section.
-    expected = ["What was run", "Performance", "Trajectories and angles", "Each design"]
+    expected = ["What was run", "Performance", "Trajectories, angles and forces", "Each design"]
     assert titles_of(text) == expected
 
 
@@ -311,6 +311,9 @@ def study(tmp_path_factory):
     )
 
 
+PICTURES_TOGETHER = ("gallery", "trajectories", "angles", "forces")
+
+
 @pytest.fixture(scope="module")
 def whole_page(study, tmp_path_factory):
     """The page of five designs of a study with seven."""
@@ -329,7 +332,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "Generator and modes",
         "Novelty and diversity",
         "Performance",
-        "Trajectories and angles",
+        "Trajectories, angles and forces",
         "Each design",
     ]
     for fact in (
@@ -360,7 +363,7 @@ def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
     told = re.findall(r'<img[^>]* alt="([^"]*)"', whole_page.read_text(encoding="utf-8"))
     assert sorted(told) == sorted(html.escape(alternative(name)) for name in CAPTIONS)
     assert alternative("mesh", "bending") == f"{ALTERNATIVES['mesh']}: bending."
-    assert set(ALTERNATIVES) == {*CAPTIONS, *OF_DESIGN, "gallery", "trajectories", "angles"}
+    assert set(ALTERNATIVES) == {*CAPTIONS, *OF_DESIGN, *PICTURES_TOGETHER}
     assert all(len(text.split()) > 5 for text in ALTERNATIVES.values())
 
 
@@ -412,14 +415,15 @@ def opened(page, folder, probe="", anchor=""):
 @needs_browser
 def test_page_draws_without_errors_in_a_browser(page, tmp_path):
     document = opened(page, tmp_path)
-    # Four plots of all designs, and shape and angles of two designs.
-    assert document.count('class="plot-container') == 4 + 2 * 2
+    # Four plots of all designs; shape, angles, force, gap and volume of two designs.
+    assert document.count('class="plot-container') == 4 + 2 * 5
     assert document.count("<canvas") >= 2
     assert "30 kPa</output>" in document
     # The key of the designs is text of the page; no legend lies over a title of theirs.
     key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
     assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
-    assert document.count('class="legend"') == 2
+    # Angles have one, and gap and volume one each: of force there is one curve.
+    assert document.count('class="legend"') == 2 * 3
 
 
 _PROBE = """

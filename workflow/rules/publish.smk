@@ -38,7 +38,7 @@ rule figures:
         config=config_of_pictures(),
         design=design_folder,
     message:
-        "Draw design {wildcards.design}: geometry, mesh and deformed shapes."
+        "Draw design {wildcards.design}: geometry, mesh, shapes, contact and blocked force."
     shell:
         "pagd figures {params.design:q} --config {params.config:q}"
         " --keep-going --out {output.figures:q} > {log:q} 2>&1"
@@ -69,7 +69,7 @@ rule pictures_together:
         resolution_dpi=CONFIG["figures"]["resolution_dpi"],
         designs=folders_of,
     message:
-        "Draw the designs together: shapes, trajectories and angles."
+        "Draw the designs together: shapes, trajectories, angles and blocked forces."
     script:
         "../scripts/pictures_together.py"
 

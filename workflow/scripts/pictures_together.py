@@ -5,8 +5,9 @@ from pathlib import Path
 
 from pagd.figures.angles import draw_angles
 from pagd.figures.drawing import draw_side_by_side
+from pagd.figures.forces import draw_forces
 from pagd.figures.gallery import draw_gallery
-from pagd.figures.load import has_states, has_trajectory
+from pagd.figures.load import has_blocked_force, has_states, has_trajectory
 from pagd.figures.style import set_resolution
 from pagd.figures.trajectories import draw_trajectories
 
@@ -21,6 +22,8 @@ def main(designs: list[Path], out: Path, resolution_dpi: int) -> None:
     if any(has_trajectory(folder) for folder in designs):
         draw_trajectories(designs, out / "trajectories.png")
         draw_angles(designs, out / "angles.png")
+    if any(has_blocked_force(folder) for folder in designs):
+        draw_forces(designs, out / "forces.png")
 
 
 if "snakemake" in globals():

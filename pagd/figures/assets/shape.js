@@ -106,6 +106,7 @@ class Viewer {
     this.button.addEventListener("click", () => (this.timer ? this.stop() : this.play()));
     this.label();
     if (design.path) this.drawAngles();
+    drawSteps(card.querySelector(".curves"), design.steps);
     redraws.push(() => this.shown && Plotly.react(this.element, this.traces(), this.layout(), options));
   }
 

@@ -75,6 +75,15 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         " actuators; crosses: designs that failed, as far as they came.",
         "{simulated} designs were simulated, {succeeded} ended well.",
     ),
+    "force_bending": (
+        "Blocked force against bending of the free tip of every simulated design, each at the last"
+        " pressure that its analysis reached.",
+        "The blocked force is that on the support of an actuator held from the start: what pushes"
+        " hard need not bend far.",
+        "Colour and shape: the mode it was drawn for; open: Table 2 of the paper and published"
+        " actuators; crosses: designs whose free actuation failed.",
+        "{held} of {simulated} simulated designs have a blocked force ({support}).",
+    ),
     "feasibility": (
         "What became of the simulated designs, by the mode they were drawn for and by where they"
         " come from; the numbers are counts.",

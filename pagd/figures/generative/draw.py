@@ -15,6 +15,7 @@ from pagd.figures.generative.distributions import draw_distributions
 from pagd.figures.generative.embedding import draw_embedding
 from pagd.figures.generative.facts import facts_of
 from pagd.figures.generative.feasibility import draw_feasibility
+from pagd.figures.generative.force_bending import draw_force_bending
 from pagd.figures.generative.hull import draw_hull
 from pagd.figures.generative.mixture import draw_mixture
 from pagd.figures.generative.modes import draw_modes
@@ -38,6 +39,7 @@ PICTURES: Final[Mapping[str, Callable[[GenerativePaths, Path], None]]] = {
     "distributions": draw_distributions,
     "feasibility": draw_feasibility,
     "bending_twist": draw_bending_twist,
+    "force_bending": draw_force_bending,
     "novelty_performance": draw_novelty_performance,
 }
 #: The picture of the documentation: text, so that it can be kept under version control.

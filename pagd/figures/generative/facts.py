@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from pagd.figures.captions import SUPPORTS
 from pagd.figures.generative.captions import facts_of_settings, written
 from pagd.figures.generative.results import (
     GenerativePaths,
@@ -39,6 +40,8 @@ def _counts(paths: GenerativePaths) -> dict[str, Any]:
         "generated": _length(generated),
         "mixed": None if generated is None else int((generated["mode"] == "mixed").sum()),
         "simulated": _length(simulated),
+        "held": None if simulated is None else int(simulated["blocked_force_N"].notna().sum()),
+        "support": None if simulated is None else _support(simulated),
         "succeeded": None if simulated is None else int((simulated["status"] == "ok").sum()),
     }
 
@@ -54,6 +57,12 @@ def _mixture(paths: GenerativePaths) -> dict[str, Any]:
         "redrawn": None if bridged is None else redrawn,
         "least_bic": min(bic, key=bic.get) if bic else None,
     }
+
+
+def _support(simulated: pd.DataFrame) -> str | None:
+    """Return what held the tips, in words; None where nothing was held."""
+    variants = simulated.get("blocked_force_variant", pd.Series(dtype=object)).dropna().unique()
+    return ", ".join(SUPPORTS.get(v, v) for v in sorted(variants)) or None
 
 
 def _percent(share: float) -> str:

@@ -8,8 +8,9 @@ from typing import Any
 
 from pagd.figures.captions import OF_DESIGN
 from pagd.figures.groups import Entry
-from pagd.figures.load import has_states, load_states
+from pagd.figures.load import has_history, has_states, load_states
 from pagd.figures.page.markup import badge, escaped, folded
+from pagd.figures.page.mechanics import mechanics_of
 from pagd.figures.page.pictures import CARD_PIXELS, PIXELS, pictures
 from pagd.figures.style import number
 from pagd.figures.viewer import viewer_data
@@ -30,12 +31,20 @@ _VIEWER = """
 </div>
 """
 
+# Filled by the script with what there is: blocked force, gap, volume.
+_CURVES = '<div class="curves"></div>'
+
 
 def card(entry: Entry, *, is_open: bool) -> str:
     """Return the card of a design as markup; the data of its shape are read when it is seen."""
     pixels = PIXELS if is_open else CARD_PIXELS
     shown = pictures(entry.folder / "figures", OF_DESIGN, OF_DESIGN, pixels, entry.name)
-    body = [_reason(entry), _viewer(entry), folded("Pictures", shown) if is_open else shown]
+    body = [
+        _reason(entry),
+        _mechanics(entry),
+        _viewer(entry),
+        folded("Pictures", shown) if is_open else shown,
+    ]
     state = " open" if is_open else ""
     return (
         f'<details class="card" id="design-{escaped(entry.name)}"{state}>'
@@ -65,8 +74,14 @@ def _reason(entry: Entry) -> str:
     return f'<p class="reason">{escaped(reason)}</p>' if reason else ""
 
 
+def _mechanics(entry: Entry) -> str:
+    told = mechanics_of(entry)
+    return f'<p class="note">{escaped(told)}</p>' if told else ""
+
+
 def _viewer(entry: Entry) -> str:
     if not has_states(entry.folder):
         return ""
     data = json_text(viewer_data(load_states(entry.folder)))
-    return f'{_VIEWER}<script type="application/json" class="shape-data">{data}</script>'
+    curves = _CURVES if has_history(entry.folder) else ""
+    return f'{_VIEWER}{curves}<script type="application/json" class="shape-data">{data}</script>'

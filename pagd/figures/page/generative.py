@@ -16,7 +16,12 @@ from pagd.figures.style import number
 __all__ = ["SHOWN_ELSEWHERE", "comparison_table", "generative_sections"]
 
 #: Pictures of simulated designs, which the section on performance shows.
-SHOWN_ELSEWHERE: Final = ("feasibility", "bending_twist", "novelty_performance")
+SHOWN_ELSEWHERE: Final = (
+    "feasibility",
+    "bending_twist",
+    "force_bending",
+    "novelty_performance",
+)
 # Measures below are rounding errors.
 _NOTHING: Final = 1e-9
 _OF_EMBEDDING: Final = ("embedding",)

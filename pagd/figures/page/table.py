@@ -35,6 +35,8 @@ _COLUMNS: Final = (
     _Column("tip y", "mm", "tip_y_mm", _number(1)),
     _Column("tip z", "mm", "tip_z_mm", _number(1)),
     _Column("blocked force", "N", "blocked_force_N", _number(2)),
+    _Column("first contact", "kPa", "first_contact_pressure_kPa", _number(1)),
+    _Column("penetration", "mm", "deepest_penetration_mm", _number(3)),
     _Column("work density", "kJ/m³", "work_density_kJ_m3", _number(2)),
     _Column("energy balance", "%", "energy_balance", _number(2, 100.0)),
     _Column("strain", "99 %", "strain_p99", _number(3)),

@@ -9,24 +9,34 @@ from string import Template
 from typing import Any, Final
 
 from pagd.figures.captions import TOGETHER
+from pagd.figures.curves import curves_of
 from pagd.figures.groups import FEW, Entry, by_mode, line_looks, read_entries
 from pagd.figures.load import has_trajectory, load_trajectory
 from pagd.figures.page.cards import card, json_text
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, generative_sections
 from pagd.figures.page.markup import Section, escaped, folded, numbered, section
+from pagd.figures.page.mechanics import contact_note
 from pagd.figures.page.pictures import pictures as embedded
 from pagd.figures.page.rows import Row, rows_of
 from pagd.figures.page.run import what_was_run
 from pagd.figures.page.study import Study, captions_of, performance_of, record_in
 from pagd.figures.page.table import results_table
-from pagd.figures.style import MODE_LOOKS, STRAIN_COLOURS, STRAIN_LABEL
+from pagd.figures.style import BLOCKED, FREE, MODE_LOOKS, STRAIN_COLOURS, STRAIN_LABEL
 from pagd.figures.viewer import path_data
 from pagd.files import write_text
 from pagd.record import Record
 
 __all__ = ["write_page"]
 
-_SCRIPTS: Final = ("plots.js", "paths.js", "scatter.js", "shape.js", "table.js", "page.js")
+_SCRIPTS: Final = (
+    "plots.js",
+    "paths.js",
+    "scatter.js",
+    "steps.js",
+    "shape.js",
+    "table.js",
+    "page.js",
+)
 # What a point of the plots of all designs tells of its design.
 _OF_POINT: Final = (
     "design_id",
@@ -57,7 +67,7 @@ def write_page(
     out
         The HTML file; it appears complete or not at all.
     pictures
-        Folder with gallery.png, trajectories.png and angles.png; None leaves them out.
+        Folder with gallery.png, trajectories.png, angles.png and forces.png; None leaves them out.
     study
         Where the results of the generative half lie; None leaves them out.
 
@@ -89,9 +99,9 @@ def _sections(
     return [
         Section("run", "What was run", what_was_run(entries, rows, _records(study))),
         *generative_sections(study),
-        Section("performance", "Performance", _performance(rows, study)),
+        Section("performance", "Performance", _performance(entries, rows, study)),
         Section("shapes", "Deformed shapes", embedded(pictures, ("gallery",), TOGETHER)),
-        Section("paths", "Trajectories and angles", _paths(entries, pictures)),
+        Section("paths", "Trajectories, angles and forces", _paths(entries, pictures)),
         Section("designs", "Each design", "\n".join(cards)),
     ]
 
@@ -100,11 +110,13 @@ def _records(study: Study) -> list[Record | None]:
     return [record_in(folder) for folder in (study.dataset, study.embedding, study.generated)]
 
 
-def _performance(rows: Sequence[Row], study: Study) -> str:
+def _performance(entries: Sequence[Entry], rows: Sequence[Row], study: Study) -> str:
     plots = [_plot("bending_twist", rows, "twist_deg"), _plot("novelty_bending", rows, "novelty")]
+    contact = contact_note(entries)
     return "".join(
         [
             _NOTE,
+            f'<p class="note">{escaped(contact)}</p>' if contact else "",
             results_table(rows),
             f'<div class="grid wide">{"".join(plots)}</div>' if any(plots) else "",
             embedded(study.simulated, SHOWN_ELSEWHERE, captions_of(study.simulated)),
@@ -112,7 +124,7 @@ def _performance(rows: Sequence[Row], study: Study) -> str:
     )
 
 
-_NOTE: Final = """<p class="note">At the highest pressure reached. Bending is positive towards the
+_NOTE: Final = """<p class="note">At the last pressure reached. Bending is positive towards the
 paper (down), twist by the right hand about the axis from the fixed end to the tip; both are summed
 over the chambers, so that they pass 180°. Energy balance: |∫p&nbsp;dV&nbsp;−&nbsp;U|&nbsp;/&nbsp;U.
 Strain: 99th percentile of the largest principal logarithmic strain. A click on a heading sorts.</p>
@@ -128,7 +140,7 @@ def _plot(name: str, rows: Iterable[Row], key: str) -> str:
 
 
 def _paths(entries: Sequence[Entry], pictures: Path | None) -> str:
-    shown = embedded(pictures, ("trajectories", "angles"), TOGETHER)
+    shown = embedded(pictures, ("trajectories", "angles", "forces"), TOGETHER)
     if not any(has_trajectory(entry.folder) for entry in entries):
         return shown
     plots = "".join(
@@ -147,6 +159,7 @@ def _content(entries: Sequence[Entry], rows: Sequence[Row]) -> dict[str, Any]:
     groups = by_mode(entries)
     return {
         "strain": {"colours": STRAIN_COLOURS, "label": STRAIN_LABEL},
+        "analyses": {"free": FREE, "held": BLOCKED},
         "modes": {mode: look.colour for mode, look in MODE_LOOKS.items()},
         "groups": list(groups) if len(entries) > FEW else [],
         "designs": _designs(entries, groups),
@@ -170,6 +183,7 @@ def _designs(
             "colour": lines[entry.name].colour,
             "dash": lines[entry.name].script,
             "path": _path(entry),
+            "steps": curves_of(entry.folder),
         }
         for entry in entries
     ]

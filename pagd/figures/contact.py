@@ -1,0 +1,119 @@
+"""Picture of a design's contact: gap between walls over pressure, and where walls touch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pagd.figures.deformed import VIEW, Shapes, draw_triad
+from pagd.figures.load import (
+    Steps,
+    has_blocked_force,
+    load_blocked_force,
+    load_history,
+    load_records,
+    load_states,
+)
+from pagd.figures.scene import Image, Sheet, Wire, render
+from pagd.figures.style import BLOCKED, ELASTOMER, FREE, INK, kilopascals, new_figure, number, save
+from pagd.figures.touching import touching_triangles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["contact_figure", "draw_contact", "picture_of_touching"]
+
+_TOUCHING = "#c4303f"
+# Inches: width of the curve's panel, and of the shape's; height of the picture, at most.
+_CURVE, _SHAPE, _HEIGHT = 4.6, 6.4, 4.6
+
+
+def draw_contact(design_folder: Path, out: Path) -> None:
+    """Draw the contact of a design to a PNG file; InputError if it was not solved."""
+    steps = {"free": load_history(design_folder)}
+    if has_blocked_force(design_folder):
+        steps["tip held"] = load_blocked_force(design_folder)
+    metrics = load_records(design_folder).get("metrics")
+    first = metrics.figures.get("first_contact_pressure_kPa") if metrics else None
+    shapes = Shapes.of(load_states(design_folder))
+    save(contact_figure(design_folder.name, steps, shapes, first), out)
+
+
+def contact_figure(
+    title: str, analyses: Mapping[str, Steps], shapes: Shapes, first_contact_kPa: float | None
+) -> Figure:
+    """Return the picture: the gap over pressure on the left, the last shape on the right.
+
+    Parameters
+    ----------
+    title
+        Name of the design.
+    analyses
+        Steps with their gaps, by the name of the analysis.
+    shapes
+        Of the free actuation.
+    first_contact_kPa
+        Pressure at which walls first touch in free actuation; None where none do.
+    """
+    figure = new_figure(_CURVE + _SHAPE, _HEIGHT)
+    curve, place = figure.subplots(1, 2, width_ratios=[_CURVE, _SHAPE])
+    _draw_gaps(curve, analyses, first_contact_kPa)
+    image, area = picture_of_touching(shapes, 225.0 * _SHAPE)
+    place.imshow(image)
+    place.set_axis_off()
+    last = kilopascals(shapes.pressure_kPa[-1])
+    there = f"{number(area, 0)} mm² of wall touch" if area else "no walls touch"
+    place.set_title(f"free, {last}: {there}")
+    figure.suptitle(f"{title}: contact between walls", fontweight="bold")
+    draw_triad(figure, VIEW, left=(_CURVE + 0.3) / (_CURVE + _SHAPE))
+    return figure
+
+
+def picture_of_touching(shapes: Shapes, pixels: float) -> tuple[Image, float]:
+    """Return the last shape, transparent, with what touches in red, and its area in mm².
+
+    `pixels` is the width of the picture. Touching walls are two, and their areas are added.
+    """
+    points = shapes.points[-1]
+    box = VIEW.box(points).widened(0.02)
+    parts: list[Sheet | Wire] = [
+        Sheet(points=points, triangles=shapes.triangles, colour=ELASTOMER, opacity=0.25),
+        Wire(points=points, edges=shapes.edges, opacity=0.35),
+    ]
+    where, triangles = touching_triangles(points, shapes.triangles)
+    if len(triangles):
+        parts.insert(0, Sheet(points=where, triangles=triangles, colour=_TOUCHING, smooth=False))
+    corners = where[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = float(np.linalg.norm(across, axis=1).sum() / 2.0)
+    return render(parts, VIEW, box, pixels / box.width), area
+
+
+def _draw_gaps(axes: Axes, analyses: Mapping[str, Steps], first_contact_kPa: float | None) -> None:
+    axes.axhline(0.0, color=INK, linewidth=0.9)
+    looks = {"free": (FREE, "o-"), "tip held": (BLOCKED, "s-")}
+    for name, steps in analyses.items():
+        colour, line = looks[name]
+        axes.plot(
+            steps.pressure_kPa,
+            steps.smallest_gap_mm,
+            line,
+            color=colour,
+            markersize=3,
+            label=name,
+        )
+    if first_contact_kPa is not None:
+        label = f"first contact, free: {kilopascals(first_contact_kPa)}"
+        axes.axvline(first_contact_kPa, color=_TOUCHING, linestyle="--", label=label)
+    gaps = np.concatenate([steps.smallest_gap_mm for steps in analyses.values()])
+    if not np.isfinite(gaps).any():
+        axes.text(0.5, 0.5, "no two walls come near", transform=axes.transAxes, ha="center")
+    axes.set_xlim(left=0.0)
+    axes.set(title="smallest gap between walls", xlabel="pressure, kPa", ylabel="gap, mm")
+    low, high = axes.get_ylim()
+    axes.set_ylim(bottom=min(low, -0.05 * high))
+    axes.legend(loc="best")

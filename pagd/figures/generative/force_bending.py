@@ -1,0 +1,63 @@
+"""Picture of blocked force against bending of the simulated designs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from pagd.figures.generative.results import GenerativePaths, NothingToDraw, load_performance
+from pagd.figures.generative.simulated import (
+    draw_simulated,
+    legend_of_simulated,
+    name_known,
+    with_numbers,
+)
+from pagd.figures.style import FAINT, new_figure, save
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["draw_force_bending", "force_bending_figure"]
+
+
+def draw_force_bending(paths: GenerativePaths, out: Path) -> None:
+    """Draw blocked force against bending to a PNG file.
+
+    Raises
+    ------
+    NothingToDraw
+        If no simulated design has both.
+    """
+    save(force_bending_figure(load_performance(paths)), out)
+
+
+def force_bending_figure(performance: pd.DataFrame) -> Figure:
+    """Return the picture: a point a design, each analysis at the last pressure it reached.
+
+    Parameters
+    ----------
+    performance
+        Simulated designs with the columns :data:`pagd.tables.PERFORMANCE`; nulls are left out.
+
+    Raises
+    ------
+    NothingToDraw
+        If no design has both.
+    """
+    found = with_numbers(performance, "bending_deg", "blocked_force_N")
+    if found.empty:
+        raise NothingToDraw("No simulated design has both a bending and a blocked force.")
+    figure = new_figure(8.6, 6.4)
+    axes = figure.add_subplot()
+    for line in (axes.axhline, axes.axvline):
+        line(0.0, color=FAINT, linewidth=0.8, zorder=1)
+    draw_simulated(axes, found, "bending_deg", "blocked_force_N")
+    axes.margins(0.08)
+    axes.set(xlabel="bending of the free tip, degrees", ylabel="blocked force, N")
+    plural = "s" if len(found) != 1 else ""
+    axes.set_title(f"blocked force and bending of {len(found):,} simulated design{plural}")
+    legend_of_simulated(figure, found)
+    name_known(axes, found, "bending_deg", "blocked_force_N")
+    return figure
