@@ -21,7 +21,7 @@ HISTORY = (
     Column("stored_energy_mJ", "double", "mJ", "elastic energy of elastomer and paper"),
     Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
     Column("newton_iterations", "int32", "1", "Newton iterations of the step"),
-    Column("recorded", "bool", "", "whether it is a recorded state, in their order"),
+    Column("recorded", "bool", "", "whether the state is recorded, in their order"),
     Column("smallest_gap_mm", "double", "mm", "gap between chambers, negative: overlap; null: far"),
 )
 

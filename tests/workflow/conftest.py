@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import importlib.util
 import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+
+from pagd.tables import units
 
 ROOT = Path(__file__).parents[2]
 HEAD = "name,L,W,H,t,t_n,t_h,t_ab,t_b,N,theta,alpha"
@@ -82,6 +86,28 @@ class Project:
 
     def __truediv__(self, path: str) -> Path:
         return self.folder / "results" / path
+
+
+def undeclared_tables(results: Path) -> list[str]:
+    """Return the tables under ``results`` that docs/data.md lacks, or has with other columns."""
+    path = ROOT / "workflow" / "scripts" / "data_dictionary.py"
+    spec = importlib.util.spec_from_file_location("data_dictionary", path)
+    assert spec is not None
+    assert spec.loader is not None
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    declared = {file: table.columns for table in script.TABLES for file in table.files}
+    found = sorted(str(file.relative_to(results)) for file in results.rglob("*.parquet"))
+    assert found
+    told = {
+        file: next((c for pattern, c in declared.items() if fnmatch(file, pattern)), ())
+        for file in found
+    }
+    return [
+        file
+        for file, columns in told.items()
+        if units(results / file) != {column.name: column.unit for column in columns}
+    ]
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ import pytest
 from pagd.record import read_record
 from pagd.tables import read_rows
 
-from .conftest import GENERATIVE, STRAIGHT, Project
+from .conftest import GENERATIVE, STRAIGHT, Project, undeclared_tables
 
 STAGES = {
     "dataset": "dataset",
@@ -45,6 +45,10 @@ def test_every_stage_leaves_its_record(generative: Project) -> None:
         section = "generator" if stage == "generate" else stage
         assert record.configuration[section]["seed"] == 1
         assert "numpy" in record.versions
+
+
+def test_every_table_has_the_columns_of_the_data_dictionary(generative: Project) -> None:
+    assert undeclared_tables(generative / "") == []
 
 
 def test_training_and_generated_designs(generative: Project) -> None:

@@ -17,7 +17,7 @@ import yaml
 from pagd.record import read_record
 from pagd.tables import read_rows, units
 
-from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project
+from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project, undeclared_tables
 
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
 GATHERED = {
@@ -124,6 +124,10 @@ def test_every_pressure_and_chamber_of_all_designs(finished: Project) -> None:
     for whole, *both in zip(rows, chambers[::2], chambers[1::2], strict=True):
         for angle in ("bending_deg", "twist_deg"):
             assert sum(row[angle] for row in both) == pytest.approx(whole[angle], abs=1e-9)
+
+
+def test_every_table_has_the_columns_of_the_data_dictionary(finished: Project) -> None:
+    assert undeclared_tables(finished / "") == []
 
 
 def test_without_a_selection_there_is_no_generative_half(finished: Project) -> None:
