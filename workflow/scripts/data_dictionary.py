@@ -139,7 +139,7 @@ OTHER_FILES = (
     ("generated/mixture.json", "Gaussians the designs come from: weights, means, covariances"),
     (
         "selection/designs.csv",
-        "[table](../config/README.md#tables-of-designs) of the designs to simulate",
+        "[designs](../config/README.md#tables-of-designs) to simulate",
     ),
     ("designs/*/geometry/design.json", "the design: its name, origin and parameters"),
     ("designs/*/geometry/design.scad", "the design for OpenSCAD"),
