@@ -15,9 +15,11 @@ from pagd.actuation.settings import Actuation
 from pagd.errors import Status
 from pagd.fem.assembly import Assembly, State
 from pagd.fem.conjugate import ConjugatePath
+from pagd.fem.contact import FaceContact
 from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
 from pagd.fem.linear_solver import LinearSolver, linear_solver
 from pagd.fem.newton import Newton, NewtonSettings
+from pagd.fem.plane_contact import PlaneContact
 
 FloatArray = NDArray[np.float64]
 
@@ -55,9 +57,8 @@ def follow(
         Is called with every converged step, the unloaded one first.
     """
     solver = linear_solver(actuation.linear_solver)
-    settings = NewtonSettings(
-        tolerance=actuation.tolerance_mm, **(_PATIENT if body.contact else {})
-    )
+    touches = any(isinstance(term, FaceContact | PlaneContact) for term in assembly.terms)
+    settings = NewtonSettings(tolerance=actuation.tolerance_mm, **(_PATIENT if touches else {}))
     newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure)
     followed = _follow(body, newton, actuation, recorder)
     # Where the path ends early, how far it came is a result too.
