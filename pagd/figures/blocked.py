@@ -131,7 +131,8 @@ def _draw_curve(axes: Axes, analysis: Blocked) -> None:
 
 def _draw_pair(figure: Figure, places: list[Axes], pair: Pair) -> None:
     top = strain_limit([pair.free, pair.blocked])
-    box, scale = pair.box, 225.0 * _SHAPE / pair.box.width
+    box = pair.box
+    scale = 225.0 * min(_SHAPE / box.width, _HEIGHT / box.height)
     for axes, name, shapes, state in (
         (places[0], "free", pair.free, pair.state),
         (places[1], "held", pair.blocked, len(pair.blocked.points) - 1),

@@ -18,7 +18,17 @@ from pagd.figures.load import (
     load_states,
 )
 from pagd.figures.scene import Image, Sheet, Wire, render
-from pagd.figures.style import BLOCKED, ELASTOMER, FREE, INK, kilopascals, new_figure, number, save
+from pagd.figures.style import (
+    BASE,
+    BLOCKED,
+    FAINT,
+    FREE,
+    INK,
+    kilopascals,
+    new_figure,
+    number,
+    save,
+)
 from pagd.figures.touching import touching_triangles
 
 if TYPE_CHECKING:
@@ -62,7 +72,7 @@ def contact_figure(
     figure = new_figure(_CURVE + _SHAPE, _HEIGHT)
     curve, place = figure.subplots(1, 2, width_ratios=[_CURVE, _SHAPE])
     _draw_gaps(curve, analyses, first_contact_kPa)
-    image, area = picture_of_touching(shapes, 225.0 * _SHAPE)
+    image, area = picture_of_touching(shapes, (225.0 * _SHAPE, 225.0 * _HEIGHT))
     place.imshow(image)
     place.set_axis_off()
     last = kilopascals(shapes.pressure_kPa[-1])
@@ -73,16 +83,16 @@ def contact_figure(
     return figure
 
 
-def picture_of_touching(shapes: Shapes, pixels: float) -> tuple[Image, float]:
+def picture_of_touching(shapes: Shapes, pixels: tuple[float, float]) -> tuple[Image, float]:
     """Return the last shape, transparent, with what touches in red, and its area in mm².
 
-    `pixels` is the width of the picture. Touching walls are two, and their areas are added.
+    `pixels` are the largest width and height. Touching walls are two, and their areas are added.
     """
     points = shapes.points[-1]
     box = VIEW.box(points).widened(0.02)
     parts: list[Sheet | Wire] = [
-        Sheet(points=points, triangles=shapes.triangles, colour=ELASTOMER, opacity=0.25),
-        Wire(points=points, edges=shapes.edges, opacity=0.35),
+        Sheet(points=points, triangles=shapes.triangles, colour=BASE, opacity=0.18),
+        Wire(points=points, edges=shapes.edges, colour=FAINT),
     ]
     where, triangles = touching_triangles(points, shapes.triangles)
     if len(triangles):
@@ -90,7 +100,8 @@ def picture_of_touching(shapes: Shapes, pixels: float) -> tuple[Image, float]:
     corners = where[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = float(np.linalg.norm(across, axis=1).sum() / 2.0)
-    return render(parts, VIEW, box, pixels / box.width), area
+    scale = min(pixels[0] / box.width, pixels[1] / box.height)
+    return render(parts, VIEW, box, scale), area
 
 
 def _draw_gaps(axes: Axes, analyses: Mapping[str, Steps], first_contact_kPa: float | None) -> None:

@@ -24,6 +24,7 @@ from pagd.figures.generative.draw import CAPTIONS_NAME, PICTURES, draw_generativ
 from pagd.figures.generative.embedding import SHOWN, embedding_figure
 from pagd.figures.generative.facts import facts_of
 from pagd.figures.generative.feasibility import feasibility_figure
+from pagd.figures.generative.force_bending import force_bending_figure
 from pagd.figures.generative.hull import hull_figure
 from pagd.figures.generative.labels import label_points
 from pagd.figures.generative.mixture import mixture_figure
@@ -100,6 +101,8 @@ def simulated(name, origin, mode, status="ok", bending=90.0, **values):
         "bending_deg": bending,
         "twist_deg": None if failed_early else 10.0,
         "work_density_kJ_m3": None if failed_early else 2.0,
+        "blocked_force_N": None if failed_early else 0.5,
+        "blocked_force_variant": None if failed_early else "edge",
         "novelty": 1.0,
     } | values
 
@@ -523,14 +526,32 @@ def test_bending_against_twist_names_known_designs_and_crosses_failed_ones():
     assert legend_of(figure)[3:] == ["Table 2 or published", "failed: as far as it came"]
 
 
-@pytest.mark.parametrize("figure", [bending_twist_figure, novelty_performance_figure])
+def test_force_against_bending_leaves_out_what_was_not_held():
+    free = simulated("g0006", "generated", "mixed", blocked_force_N=None)
+    strong = simulated("g0007", "generated", "mixed", bending=10.0, blocked_force_N=3.5)
+    figure = force_bending_figure(performance([*SIMULATED, free, strong]))
+    (axes,) = figure.axes
+    assert points_in(axes) == 8
+    assert heading(axes) == "blocked force and bending of 8 simulated designs"
+    points = [tuple(point) for c in axes.collections for point in c.get_offsets()]
+    assert (10.0, 3.5) in points
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (
+        "bending of the free tip, degrees",
+        "blocked force, N",
+    )
+
+
+OF_PERFORMANCE = (bending_twist_figure, force_bending_figure, novelty_performance_figure)
+
+
+@pytest.mark.parametrize("figure", OF_PERFORMANCE)
 def test_performance_without_any_number_is_no_picture(figure):
     failed = performance([simulated("g", "generated", "mixed", "mesh_failed", bending=None)])
     with pytest.raises(NothingToDraw):
         figure(failed)
 
 
-@pytest.mark.parametrize("figure", [bending_twist_figure, novelty_performance_figure])
+@pytest.mark.parametrize("figure", OF_PERFORMANCE)
 def test_performance_of_a_single_design(figure):
     for axes in figure(performance(SIMULATED[:1])).axes:
         assert points_in(axes) == 1
@@ -641,6 +662,8 @@ def test_captions_carry_the_numbers_of_the_run(results):
     assert "those of Table 2 as stars" in found["embedding"]
     assert "it is least with 2." in found["mixture"]
     assert "8 designs were simulated, 6 ended well." in found["feasibility"]
+    held = "7 of 8 simulated designs have a blocked force (lower edge of the tip held)."
+    assert held in found["force_bending"]
     assert not any("{" in text for text in found.values())
 
 

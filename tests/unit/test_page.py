@@ -149,6 +149,10 @@ def test_page_tells_of_every_design(page):
     # What there is nothing of has no section.
     expected = ["What was run", "Performance", "Trajectories, angles and forces", "Each design"]
     assert titles_of(text) == expected
+    assert text.count("Blocked force (lower edge of the tip held): 0.69 N at 30 kPa.") == 2
+    assert "Contact was off" not in text
+    steps = [set(d["steps"]) for d in data_of(text)["designs"]]
+    assert steps == [{"free", "held"}, {"free", "held"}, set()]
 
 
 @pytest.mark.parametrize(("contact", "word"), [(True, "on"), (False, "off")])
@@ -192,6 +196,25 @@ def test_table_shows_what_is_known_and_sorts_by_numbers():
     assert 'data-order="-1234.56"' in first
     assert 'href="#design-a"' in first
     assert "href" not in second
+
+
+def test_table_has_force_contact_and_penetration_with_their_units():
+    known = {"blocked_force_N": 1.234, "first_contact_pressure_kPa": 31.26}
+    rows = [
+        {
+            "design_id": "a",
+            "link": False,
+            "status": "ok",
+            **known,
+            "deepest_penetration_mm": 0.0123,
+        },
+        {"design_id": "b", "link": False, "status": "ok", "first_contact_pressure_kPa": None},
+    ]
+    head, first, second = re.findall(r"<tr>.*?</tr>", results_table(rows), re.DOTALL)
+    assert cells(head)[2:] == ["blocked forceN", "first contactkPa", "penetrationmm"]
+    assert cells(first)[2:] == ["1.23", "31.3", "0.012"]
+    assert cells(second)[2:] == ["–", "–", "–"]
+    assert 'data-order="31.26"' in first
 
 
 @pytest.mark.parametrize(("count", "box"), [(20, "scroll"), (21, "scroll tall")])

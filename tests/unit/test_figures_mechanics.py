@@ -1,0 +1,357 @@
+"""Pictures of contact, blocked force and cavity volume, and what the page says of them."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+import pyvista as pv
+from figure_samples import FORCE, STEPS, path_only, record, solve_record, solved, states_of, steps
+from figure_samples import block as sample_block
+from matplotlib.text import Text
+
+from pagd.errors import InputError, Status
+from pagd.figures import load
+from pagd.figures.blocked import Blocked, Pair, blocked_force_figure, draw_blocked_force
+from pagd.figures.contact import contact_figure, draw_contact, picture_of_touching
+from pagd.figures.curves import curves_of, steps_data
+from pagd.figures.deformed import Shapes, _chosen
+from pagd.figures.forces import draw_forces, forces_figure
+from pagd.figures.groups import by_mode, read_entries
+from pagd.figures.load import Steps
+from pagd.figures.page.mechanics import contact_note, mechanics_of
+from pagd.figures.pressure_volume import (
+    draw_pressure_volume,
+    limit_points,
+    pressure_volume_figure,
+    volume_controlled,
+)
+from pagd.figures.touching import refined, touching_triangles
+from pagd.record import write_record
+from pagd.stages import figures as stage
+from pagd.tables import TRAJECTORY, write_table
+
+# A path whose pressure falls at its end.
+FALLING = np.array([0.0, 5.0, 10.0, 20.0, 15.0])
+
+
+def steps_of(pressure=STEPS, contact=True, force=None):
+    columns = steps(contact, pressure)
+    names = [field.name for field in dataclasses.fields(Steps)][:-1]
+    return Steps(**{name: columns[name] for name in names}, blocked_force_N=force)
+
+
+def labels(figure):
+    figure.draw_without_rendering()
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+
+
+# ---- reading --------------------------------------------------------------------------------
+
+
+def test_steps_are_those_of_the_files(tmp_path):
+    folder = solved(tmp_path / "d")
+    free, held = load.load_history(folder), load.load_blocked_force(folder)
+    np.testing.assert_array_equal(free.recorded, [True, False, True, True, True])
+    assert np.isnan(free.smallest_gap_mm[0])
+    assert free.smallest_gap_mm[-1] == pytest.approx(-0.01)
+    assert free.blocked_force_N is None
+    np.testing.assert_allclose(held.blocked_force_N, FORCE)
+    free_states, held_states = load.load_states(folder), load.load_blocked_states(folder)
+    np.testing.assert_allclose(held_states.displacement, 0.4 * free_states.displacement, atol=1e-5)
+
+
+def test_a_trajectory_keeps_the_order_of_its_path(tmp_path):
+    """Past a limit point a pressure may come twice, the second time farther bent."""
+    pressure = [0.0, 20.0, 30.0, 20.0]
+    p, s = (np.array(a).ravel() for a in np.meshgrid(pressure, [0, 1], indexing="ij"))
+    bending = np.repeat([0.0, 30.0, 60.0, 90.0], 2) * s
+    columns = {"x_mm": s, "y_mm": s, "z_mm": s, "bending_deg": bending, "twist_deg": bending}
+    table = {"design_id": ["d"] * 8, "pressure_kPa": p, "station": s.astype(np.int32)} | columns
+    (tmp_path / "metrics").mkdir()
+    write_table(tmp_path / "metrics" / "trajectory.parquet", TRAJECTORY, table)
+    path = load.load_trajectory(tmp_path)
+    np.testing.assert_array_equal(path.pressure_kPa, pressure)
+    np.testing.assert_array_equal(path.bending_deg[:, -1], [0, 30, 60, 90])
+
+
+def test_states_of_a_path_that_turns_are_drawn_to_its_end():
+    pressure = np.array([0.0, 10.0, 20.0, 30.0, 20.0, 10.0])
+    np.testing.assert_array_equal(_chosen(pressure), np.arange(6))
+    # Evenly by pressure where it only rises, the end included.
+    rising = np.array([0.0, 1.0, 10.0, 20.0, 30.0, 40.0, 49.0, 50.0])
+    np.testing.assert_array_equal(_chosen(rising), [0, 2, 3, 4, 5, 7])
+
+
+# ---- pressure and volume --------------------------------------------------------------------
+
+
+def test_limit_points_are_the_maxima_along_the_path():
+    assert limit_points(STEPS).tolist() == []
+    assert limit_points(FALLING).tolist() == [3]
+    assert limit_points(np.array([0.0, 2.0, 1.0, 3.0, 1.0])).tolist() == [1, 3]
+
+
+def test_the_section_under_control_of_the_volume_begins_where_the_pressure_stopped():
+    assert volume_controlled(FALLING, None) is None
+    assert volume_controlled(FALLING, 20.0) == slice(3, None)
+    # It was to begin at the last step, and none followed.
+    assert volume_controlled(STEPS, 30.0) is None
+
+
+def test_the_shaded_area_is_the_work():
+    path = steps_of(FALLING)
+    figure = pressure_volume_figure("d", path, 20.0)
+    (axes,) = figure.axes
+    x, y = axes.collections[0].get_paths()[0].vertices.T
+    area = abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
+    assert 1e-3 * area * path.cavity_volume_mm3[0] == pytest.approx(path.work_mJ[-1])
+    assert path.work_mJ[-1] > 1.0
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert names == [
+        f"work {path.work_mJ[-1]:.1f} mJ",
+        "steps",
+        "steps under control of the volume",
+        "recorded states",
+        "limit point",
+    ]
+    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+    np.testing.assert_allclose(lines["steps under control of the volume"][:, 1], [20.0, 15.0])
+    assert lines["limit point"].tolist() == [[1.4, 20.0]]
+    assert len(lines["recorded states"]) == 4
+    assert "20 kPa" in labels(figure)
+
+
+def test_a_rising_path_has_no_limit_in_its_picture():
+    names = labels(pressure_volume_figure("d", steps_of()))
+    assert not {"limit point", "steps under control of the volume"} & set(names)
+
+
+# ---- contact --------------------------------------------------------------------------------
+
+
+def two_boxes(gap):
+    """Two boxes, the faces of 3 × 4 mm between them `gap` apart."""
+    left = pv.Box((0.0, 5.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
+    right = pv.Box((5.0 + gap, 9.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
+    both = left.append_polydata(right)
+    return np.asarray(both.points, dtype=float), both.faces.reshape(-1, 4)[:, 1:].astype(np.int64)
+
+
+def area(points, triangles):
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+
+
+@pytest.mark.parametrize(
+    ("gap", "expected"), [(0.05, 24.0), (0.0, 24.0), (-0.05, 24.0), (0.15, 0.0), (1.0, 0.0)]
+)
+def test_touching_faces_are_the_two_between(gap, expected):
+    points, triangles = touching_triangles(*two_boxes(gap))
+    assert area(points, triangles) == pytest.approx(expected, rel=0.02)
+    if expected:
+        assert np.abs(points[:, 0] - 5.0 - gap / 2).max() < 0.1
+
+
+def test_the_sides_of_a_sharp_edge_do_not_touch():
+    """Slanted walls meet the sides of a chamber at as little as 45°."""
+    wedge = pv.PolyData(
+        np.array([[0, 0, 0], [6, 0, 0], [6, 6, 0], [0, 0, 6], [6, 0, 6], [6, 6, 6.0]]),
+        faces=[3, 0, 2, 1, 3, 3, 4, 5, 4, 0, 1, 4, 3, 4, 1, 2, 5, 4, 4, 0, 3, 5, 2],
+    ).triangulate()
+    triangles = wedge.faces.reshape(-1, 4)[:, 1:].astype(np.int64)
+    assert area(wedge.points, triangles) > 100.0
+    assert len(touching_triangles(np.asarray(wedge.points, float), triangles)[1]) == 0
+
+
+def test_refined_triangles_cover_the_same_area():
+    points, triangles = two_boxes(1.0)
+    fine = refined(points[triangles], 0.6)
+    sides = np.linalg.norm(fine - np.roll(fine, 1, axis=1), axis=2)
+    assert sides.max() <= 0.6
+    flat = fine.reshape(-1, 3), np.arange(3 * len(fine)).reshape(-1, 3)
+    assert area(*flat) == pytest.approx(area(points, triangles))
+
+
+def touching_shapes(gap):
+    points, triangles = two_boxes(gap)
+    states = np.stack([points, points])
+    edges = np.zeros((0, 2), np.int64)
+    return Shapes(np.array([0.0, 30.0]), states, np.zeros((2, len(points))), triangles, edges)
+
+
+def test_touching_parts_are_seen_through_the_body():
+    (red, wall), (pale, none) = (
+        picture_of_touching(touching_shapes(gap), (300.0, 300.0)) for gap in (0.05, 0.5)
+    )
+    assert (wall, none) == (pytest.approx(24.0, rel=0.02), 0.0)
+    reddish = [
+        np.sum((image[..., 0].astype(int) - image[..., 2] > 60) & (image[..., 3] > 0))
+        for image in (red, pale)
+    ]
+    assert reddish[0] > 500
+    assert reddish[1] == 0
+
+
+def test_contact_shows_gaps_and_the_first_touch():
+    analyses = {"free": steps_of(), "tip held": steps_of()}
+    figure = contact_figure("d", analyses, touching_shapes(0.05), 28.57)
+    curve = figure.axes[0]
+    lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
+    assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
+    np.testing.assert_array_equal(lines["tip held"], STEPS)
+    assert "free, 30 kPa: 24 mm² of wall touch" in labels(figure)
+    low, high = curve.get_ylim()
+    assert low < 0.0 < high
+
+
+def test_walls_that_never_come_near_are_said_to():
+    shapes = Shapes.of(states_of(sample_block(half=False)))
+    figure = contact_figure("d", {"free": steps_of(contact=False)}, shapes, None)
+    assert {"no two walls come near", "free, 30 kPa: no walls touch"} <= set(labels(figure))
+
+
+# ---- blocked force --------------------------------------------------------------------------
+
+ENDED = {"variant": "plate", "status": "not_converged", "reason": "The step fell."}
+
+
+def test_the_force_is_told_with_what_held_the_tip_and_how_it_ended():
+    held = steps_of(force=FORCE)
+    whole = blocked_force_figure("d", Blocked.of(held, solve_record("d").figures))
+    assert {"0.69 N at 30 kPa", "d: blocked force, lower edge of the tip held"} <= set(
+        labels(whole)
+    )
+    (curve, dots) = whole.axes[0].lines[1:]
+    np.testing.assert_allclose(curve.get_xydata(), np.column_stack([STEPS, FORCE]))
+    assert len(dots.get_xydata()) == 4
+    early = labels(blocked_force_figure("d", Blocked.of(held, {"blocked_force": ENDED})))
+    assert "0.69 N at 30 kPa\nended there: not converged" in early
+    assert "d: blocked force, on a rigid plate" in early
+
+
+def test_the_held_shape_is_shown_beside_the_free_one_of_its_pressure(tmp_path):
+    folder = solved(tmp_path / "d")
+    free, held = load.load_states(folder), load.load_blocked_states(folder)
+    sooner = dataclasses.replace(
+        held,
+        pressure_kPa=held.pressure_kPa[:3],
+        displacement=held.displacement[:3],
+        strain=held.strain[:3],
+    )
+    pair = Pair(Shapes.of(free), Shapes.of(sooner))
+    assert pair.state == 2
+    analysis = Blocked.of(load.load_blocked_force(folder), ENDED)
+    assert {"free, 20 kPa", "held, 20 kPa"} <= set(
+        labels(blocked_force_figure("d", analysis, pair))
+    )
+
+
+def test_a_few_designs_share_a_panel_of_forces_and_many_go_by_mode(tmp_path):
+    modes = ("mixed", "bending", "bending", "bending", "twisting")
+    folders = [solved(tmp_path / f"d{i}", mode=mode) for i, mode in enumerate(modes)]
+    entries = read_entries(folders)
+    found = {folder.name: load.load_blocked_force(folder) for folder in folders}
+    (one,) = forces_figure({"": entries[:2]}, found).axes
+    assert [t.get_text() for t in one.get_legend().get_texts()] == ["d0", "d1"]
+    panels = forces_figure(by_mode(entries), found).axes
+    assert [axes.get_title(loc="left") for axes in panels] == [
+        "bending (3)",
+        "twisting (1)",
+        "mixed (1)",
+    ]
+    assert len({axes.get_ylim() for axes in panels}) == 1
+    lines = {line.get_label(): line.get_xydata() for line in panels[1].lines}
+    np.testing.assert_allclose(lines["d4"], np.column_stack([STEPS, FORCE]))
+    draw_forces([*folders, solved(tmp_path / "free", support="none")], tmp_path / "forces.png")
+    assert (tmp_path / "forces.png").stat().st_size > 10_000
+    with pytest.raises(InputError, match="None of the designs"):
+        draw_forces([tmp_path / "free"], tmp_path / "none.png")
+
+
+# ---- the stage ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "absent"),
+    [
+        ({}, set()),
+        ({"contact": False}, {"contact"}),
+        ({"support": "none"}, {"blocked_force"}),
+    ],
+)
+def test_what_was_not_asked_for_is_not_drawn(tmp_path, settings, absent):
+    folder = solved(tmp_path / "d", **settings)
+    expected = {"mesh", "deformed", "pressure_volume", "contact", "blocked_force"} - absent
+    assert set(stage._drawable(folder)) == expected
+
+
+def test_of_a_design_that_was_not_solved_nothing_is_drawn(tmp_path):
+    (tmp_path / "solve").mkdir()
+    reason = {"status": Status.mesh_failed, "reason": "why"}
+    write_record(record("d", "solve", **reason), tmp_path / "solve")
+    assert stage._drawable(tmp_path) == {}
+    assert curves_of(tmp_path) == {}
+
+
+def test_pictures_of_a_solved_design_are_drawn_from_its_files(tmp_path):
+    folder = solved(tmp_path / "d", support="edge", first_contact_pressure_kPa=28.6)
+    for draw in (draw_pressure_volume, draw_contact, draw_blocked_force):
+        draw(folder, tmp_path / f"{draw.__name__}.png")
+        assert (tmp_path / f"{draw.__name__}.png").stat().st_size > 10_000
+
+
+# ---- the page -------------------------------------------------------------------------------
+
+
+def test_curves_hold_what_the_steps_know():
+    free = steps_data(steps_of(contact=False))
+    assert set(free) == {"pressure_kPa", "volume"}
+    assert free["volume"] == [1.0, 1.1, 1.2, 1.4, 1.6]
+    held = steps_data(steps_of(force=FORCE))
+    assert held["gap_mm"] == [None, 0.165, 0.13, 0.06, -0.01]
+    assert held["force_N"][-1] == 0.69
+    json.dumps(held, allow_nan=False)
+
+
+def told(folder):
+    return mechanics_of(read_entries([folder])[0])
+
+
+def test_a_design_is_told_by_what_its_records_say(tmp_path):
+    touched = solved(tmp_path / "touched", first_contact_pressure_kPa=28.6)
+    assert told(touched) == (
+        "Walls first touch at 28.6 kPa and penetrate by at most 0.010 mm, 5.0 % of the gap between"
+        " them. Blocked force (lower edge of the tip held): 0.69 N at 30 kPa."
+    )
+    assert told(solved(tmp_path / "clear", support="none")) == (
+        "No walls touched. No blocked force was asked for."
+    )
+    assert told(solved(tmp_path / "off", contact=False)).startswith(
+        "Contact was off: walls that balloon may overlap."
+    )
+    assert told(path_only(tmp_path / "bare")) == ""
+
+
+def test_limit_points_and_an_early_end_are_told(tmp_path):
+    folder = solved(tmp_path / "d")
+    ending = {"blocked_force": {**ENDED, "pressure_kPa": 20.0, "blocked_force_N": 0.5}}
+    limits = {"limit_points": 1, "volume_controlled_from_kPa": 19.5}
+    write_record(solve_record("d", **limits, **ending), folder / "solve")
+    assert told(folder) == (
+        "No walls touched. The pressure has 1 limit point. From 19.5 kPa on the volume was"
+        " controlled. Blocked force (on a rigid plate): 0.50 N at 20 kPa, where it ended: not"
+        " converged. The step fell."
+    )
+
+
+def test_the_page_says_of_contact_what_the_records_say(tmp_path):
+    on = [solved(tmp_path / name) for name in ("a", "b")]
+    off = [solved(tmp_path / name, contact=False) for name in ("c", "d")]
+    together = contact_note(read_entries([*on, off[0]]))
+    assert "at most 5.0 % of the gap" in together
+    assert together.endswith("Contact was off for 1 design: walls that balloon may overlap there.")
+    assert "off" not in contact_note(read_entries(on))
+    assert contact_note(read_entries(off)).startswith("Contact was off for all designs")
+    assert contact_note([]) == ""
