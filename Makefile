@@ -11,7 +11,7 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep test lint clean distclean system-packages
+.PHONY: help run dataset sweep test verify lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -29,6 +29,10 @@ sweep: .venv/pagd-installed ## Simulate all generated designs, 1,000 of them: ho
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.
 	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --hypothesis-profile ci --numprocesses $(CORES) --dist loadscope
+
+verify: .venv/pagd-installed ## Compute every row of the verification: docs/verification.md; half an hour at most.
+	@setup/system.sh verification-packages.txt || echo "Without CalculiX, its cases are left out."
+	python tests/verification --processes $(CORES) --out results/verification --page docs/verification.md
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .

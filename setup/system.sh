@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Install the system packages that are missing, as root or by sudo; say which ones where neither works.
+# Those of system-packages.txt, and of the lists beside it that are given as arguments.
 set -euo pipefail
 cd "$(dirname "$0")"
 
+lists=(system-packages.txt "$@")
 libraries=$(PATH=$PATH:/usr/sbin:/sbin ldconfig -p)
 python=$(./find-python.sh)
 
@@ -17,7 +19,7 @@ missing_packages() {
     local wanted package
     while read -r wanted package _; do
         present "$wanted" || echo "$package"
-    done < <(grep -v '^#' system-packages.txt)
+    done < <(grep -hv '^#' "${lists[@]}")
     # Debian splits off the part of Python that makes virtual environments.
     "$python" -c 'import ensurepip' 2>/dev/null ||
         "$python" -c 'import sys; print("python%d.%d-venv" % sys.version_info[:2])'

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from cases_actuators import balance_of_energy, element_table, other_library, resultants, symmetries
+from cases_blocked import balance_of_forces, plate_and_edge, small_pressure
+from cases_composite import bent_strip, twisted_strip
 from cases_contact import narrow_row, two_blocks
 from cases_inflation import moved_walls, walls_under_pressure
 from cases_material import balloon, homogeneous_states
 from cases_paper import circle, elastica
 from cases_solid import block_bending, convergence, cook_membrane, patch_test, rigid_rotation
+from cases_supports import block_on_plane, own_weight
 from cases_tangents import tangents
 from figure import Case, Group
 
@@ -24,10 +27,17 @@ CASES: tuple[Case, ...] = (
     Case(rows=convergence, group=Group.rates),
     Case(rows=circle, group=Group.paper),
     Case(rows=elastica, group=Group.paper),
+    Case(rows=bent_strip, group=Group.paper),
+    Case(rows=twisted_strip, group=Group.paper),
     Case(rows=resultants, group=Group.pressure),
     Case(rows=balance_of_energy, group=Group.pressure),
     Case(rows=two_blocks, group=Group.contact),
     Case(rows=narrow_row, group=Group.contact),
+    Case(rows=block_on_plane, group=Group.supports),
+    Case(rows=own_weight, group=Group.supports),
+    Case(rows=small_pressure, group=Group.supports),
+    Case(rows=balance_of_forces, group=Group.supports),
+    Case(rows=plate_and_edge, group=Group.supports),
     Case(rows=symmetries, group=Group.symmetry),
     Case(rows=other_library, group=Group.programs),
     Case(rows=element_table, group=Group.programs, costly=True),

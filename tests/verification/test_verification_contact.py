@@ -1,4 +1,4 @@
-"""Walls and supports."""
+"""Walls that touch."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from catalogue import quick
 from figure import Case, Group, check
 
 
-@pytest.mark.parametrize("case", quick(Group.contact, Group.supports), ids=lambda case: case.name)
+@pytest.mark.parametrize("case", quick(Group.contact), ids=lambda case: case.name)
 def test_contact(case: Case) -> None:
     check(case.rows())

@@ -1,12 +1,12 @@
+"""Planes, gravity, blocked force."""
+
 from __future__ import annotations
 
-from cases_supports import block_on_plane, own_weight
-from figure import check
+import pytest
+from catalogue import quick
+from figure import Case, Group, check
 
 
-def test_a_block_on_a_rigid_plane() -> None:
-    check(block_on_plane())
-
-
-def test_bars_under_their_own_weight() -> None:
-    check(own_weight())
+@pytest.mark.parametrize("case", quick(Group.supports), ids=lambda case: case.name)
+def test_supports(case: Case) -> None:
+    check(case.rows())
