@@ -116,6 +116,16 @@ def test_first_contact_lies_between_the_steps_around_it():
     assert 10.0 <= found <= 10.1
 
 
+def test_first_contact_where_the_last_open_steps_do_not_lead_to_it():
+    # The gap opens a little before it shuts: the line through the two steps that shut it.
+    pressure, gap = np.array([0.0, 5.0, 10.0, 15.0]), np.array([2.0, 0.5, 0.6, 0.02])
+    found = first_contact_pressure(pressure, gap, WIDTH)
+    assert found == pytest.approx(10.0 + 5.0 * 0.6 / 0.58)
+    # The pressure falls while the gap closes, and turns before they touch.
+    pressure, gap = np.array([0.0, 12.0, 11.0, 13.0]), np.array([2.0, 1.0, 0.5, 0.0])
+    assert first_contact_pressure(pressure, gap, WIDTH) == 11.0
+
+
 def test_without_walls_that_meet_there_is_no_first_contact():
     pressure = np.array([0.0, 10.0, 20.0])
     assert first_contact_pressure(pressure, np.array([2.0, 1.0, 0.05]), WIDTH) is None

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from pagd.cli import main
 from pagd.errors import Status
 from pagd.record import Record, versions, write_record
 from pagd.summary import GATHERED, write_gathered, write_summary
@@ -113,3 +114,18 @@ def test_nothing_gives_empty_tables(tmp_path: Path) -> None:
     write_gathered([], tmp_path)
     for name in ("p.parquet", *(name for name, _, _ in GATHERED)):
         assert read_rows(tmp_path / name) == []
+
+
+def test_the_command_line_writes_all_tables(folders: list[Path], tmp_path: Path) -> None:
+    """Of the designs that came as far as the metrics; the folder of another is left out."""
+    designs = tmp_path / "designs"
+    for path in folders:
+        (designs / path.name).mkdir(parents=True)
+        path.rename(designs / path.name / "metrics")
+    (designs / "unfinished").mkdir()
+    named = sorted(map(str, designs.iterdir()))
+    assert main(["summary", *named, "--out", str(tmp_path / "tables")]) == 0
+    written = {path.name for path in (tmp_path / "tables").iterdir()}
+    assert written == {"performance.parquet", "summary.csv", *(name for name, _, _ in GATHERED)}
+    rows = read_rows(tmp_path / "tables" / "performance.parquet")
+    assert [row["design_id"] for row in rows] == ["bad", "good", "own"]

@@ -106,7 +106,7 @@ def test_units_agree_with_the_names(columns: tuple[Column, ...]) -> None:
             assert column.unit == prefix + ENDINGS[words[-1]], column.name
 
 
-@pytest.mark.parametrize("columns", (*DECLARED, DESIGNS, GENERATED, COMPARISON))
+@pytest.mark.parametrize("columns", [*DECLARED, DESIGNS, GENERATED, COMPARISON])
 def test_every_column_is_told_once_with_a_type_and_a_unit(columns: tuple[Column, ...]) -> None:
     assert len({column.name for column in columns}) == len(columns)
     for column in columns:
