@@ -32,7 +32,8 @@ def first_contact_pressure(
     Returns
     -------
     float or None
-        None if no step comes nearer than ``width_mm``; the first known pressure if that one does.
+        None if no step comes nearer than ``width_mm``, or the gap would close beyond the end of
+        the path only; the first known pressure if that step is nearer.
     """
     known = np.isfinite(smallest_gap_mm)
     pressure, gap = pressure_kPa[known], smallest_gap_mm[known]
@@ -48,7 +49,9 @@ def first_contact_pressure(
         closing = _zero(pressure[first - 2 : first], gap[first - 2 : first])
     # Behind a limit point the pressure falls while the gap closes.
     low, high = sorted((float(pressure[first - 1]), latest))
-    return min(max(closing, low), high)
+    found = min(max(closing, low), high)
+    seen = pressure[first - 1 :]
+    return found if seen.min() <= found <= seen.max() else None
 
 
 def _zero(pressure: FloatArray, gap: FloatArray) -> float:

@@ -107,18 +107,20 @@ def test_first_contact_lies_between_the_steps_around_it():
     # Slow, then suddenly shut: the line through the first steps would end at 30 kPa.
     pressure, gap = np.array([0.0, 5.0, 10.0, 15.0]), np.array([3.0, 2.5, 2.0, -0.01])
     assert first_contact_pressure(pressure, gap, WIDTH) == 15.0
-    # A little open still: as far as the last two steps reach.
+    # A little open still: as far as the last two steps reach, if the path comes that far.
     gap[-1] = 0.02
+    assert first_contact_pressure(pressure, gap, WIDTH) is None
+    pressure, gap = np.append(pressure, 16.0), np.append(gap, 0.01)
     assert first_contact_pressure(pressure, gap, WIDTH) == pytest.approx(15.0 + 5 * 0.02 / 1.98)
     # Shutting fast, then slowly: not before the last step that was open.
-    gap = np.array([3.0, 2.9, 0.05, 0.03])
+    gap = np.array([3.0, 2.9, 0.05, 0.03, 0.02])
     found = first_contact_pressure(pressure, gap, WIDTH)
     assert 10.0 <= found <= 10.1
 
 
 def test_first_contact_where_the_last_open_steps_do_not_lead_to_it():
     # The gap opens a little before it shuts: the line through the two steps that shut it.
-    pressure, gap = np.array([0.0, 5.0, 10.0, 15.0]), np.array([2.0, 0.5, 0.6, 0.02])
+    pressure, gap = np.array([0.0, 5.0, 10.0, 15.0, 20.0]), np.array([2.0, 0.5, 0.6, 0.02, 0.01])
     found = first_contact_pressure(pressure, gap, WIDTH)
     assert found == pytest.approx(10.0 + 5.0 * 0.6 / 0.58)
     # The pressure falls while the gap closes, and turns before they touch.
@@ -130,6 +132,13 @@ def test_without_walls_that_meet_there_is_no_first_contact():
     pressure = np.array([0.0, 10.0, 20.0])
     assert first_contact_pressure(pressure, np.array([2.0, 1.0, 0.05]), WIDTH) is None
     assert first_contact_pressure(pressure, np.full(3, np.nan), WIDTH) is None
+
+
+def test_walls_that_are_near_but_would_meet_later_have_no_first_contact():
+    pressure, gap = np.array([0.0, 30.0, 40.0, 50.0]), np.array([1.0, 0.3, 0.2, 0.038])
+    assert first_contact_pressure(pressure, gap, WIDTH) is None
+    met = first_contact_pressure(np.append(pressure, 55.0), np.append(gap, 0.02), WIDTH)
+    assert met == pytest.approx(50.0 + 10.0 * 0.038 / 0.162)
 
 
 def test_first_contact_with_gaps_that_are_unknown_or_shut_at_first():
