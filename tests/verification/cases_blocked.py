@@ -1,4 +1,4 @@
-"""Blocked force of a beam-like actuator: by superposition, by balance, on the edge and on a plate."""
+"""Blocked force of a beam-like actuator: superposition, balance, on the edge and on a plate."""
 
 from __future__ import annotations
 

@@ -43,6 +43,20 @@ def sphere_pressure(material: Coefficients, inner: float, outer: float, stretch:
     return float(quad(lambda s: slope(s) / (s**3 - 1), outer_stretch, stretch)[0])
 
 
+def sphere_mean_stress(
+    material: Coefficients, inner: float, outer: float, stretch: float, radius: float
+) -> float:
+    """Mean stress (MPa) at a radius of a thick sphere whose inner radius has the stretch λa.
+
+    σ_r + ⅔ (σ_θ − σ_r), with σ_θ − σ_r = λ W′(λ)/2 and σ_r = −∫ W′(λ)/(λ³ − 1) dλ from λb to λ.
+    """
+    slope = _slope(material, lambda s: (s, s, s**-2))
+    grown = inner**3 * (stretch**3 - 1)
+    here, outside = ((1 + grown / r**3) ** (1 / 3) for r in (radius, outer))
+    radial = -float(quad(lambda s: slope(s) / (s**3 - 1), outside, here)[0])
+    return radial + here * slope(here) / 3
+
+
 def limit_point(material: Coefficients, inner: float, outer: float) -> tuple[float, float]:
     """Stretch λa and pressure (MPa) at which the pressure of a thick sphere is largest."""
     found = minimize_scalar(

@@ -1,4 +1,4 @@
-"""Nested refinement: every edge halved, so that the meshes of a series differ by their size alone.
+"""Nested refinement: every edge halved, so that the meshes differ by their size alone.
 
 Meshes drawn anew for another size differ by chance too, in where the elements lie; halves of one
 mesh do not.
@@ -7,10 +7,14 @@ mesh do not.
 from __future__ import annotations
 
 import numpy as np
-from solving import FloatArray
+from scipy.spatial import KDTree
+from solving import BoolArray, FloatArray, Solved, equilibrium
 
+from pagd.actuation import Body
+from pagd.fem.shapes import tetrahedron_values
+from pagd.fem.solid import TaylorHoodSolid
 from pagd.mesh.quadratic import quadratic_mesh
-from pagd.mesh.types import IntArray, Mesh
+from pagd.mesh.types import TET_EDGES, IntArray, Mesh
 
 #: Parts at the corners of a ten-node tetrahedron, in its node numbers.
 _CORNERS = np.array([(0, 4, 6, 7), (4, 1, 5, 9), (6, 5, 2, 8), (7, 9, 8, 3)])
@@ -51,3 +55,62 @@ def _cut_octahedra(mesh: Mesh) -> list[IntArray]:
 def _lengths(mesh: Mesh, ends: tuple[int, int]) -> FloatArray:
     first, second = (mesh.points[mesh.tets[:, end]] for end in ends)
     return np.linalg.norm(second - first, axis=1)
+
+
+#: Barycentric coordinates (35, 4) of the nodes that the parts of a tetrahedron have together.
+_LATTICE = (
+    np.array(
+        [(a, b, c, 4 - a - b - c) for a in range(5) for b in range(5 - a) for c in range(5 - a - b)]
+    )
+    / 4
+)
+
+
+def solve_again(coarse: Body, fine: Body, found: Solved, fixed: BoolArray, load: float) -> Solved:
+    """The equilibrium of a refined body, from that of the body it is refined of.
+
+    The first guess is the very shape of the coarse body, which its halves can take on, and the
+    pressures of its corners, so that a few iterations at the full load do.
+
+    Parameters
+    ----------
+    coarse, fine
+        P2–P1 bodies on a mesh and on the mesh :func:`halved`.
+    found
+        The equilibrium of the coarse one at the load.
+    fixed
+        Which displacements (n, 3) of the fine one are held at zero.
+    """
+    values = carried_over(coarse, fine, _nodal(coarse, found.unknowns))
+    unknowns = np.concatenate([values[:, :3].ravel(), values[_corners(fine), 3]])
+    held = np.zeros(len(unknowns), np.bool_)
+    held[: fixed.size] = fixed.ravel()
+    return equilibrium(fine.terms, held, load, unknowns, tolerance=1e-3)
+
+
+def _corners(body: Body) -> IntArray:
+    if not isinstance(body.solid, TaylorHoodSolid):
+        raise TypeError("refinement carries over the pressures of P2–P1 elements")
+    return body.solid.corners
+
+
+def _nodal(body: Body, unknowns: FloatArray) -> FloatArray:
+    """Displacement and pressure (n, 4) of all nodes; edge nodes have the mean of their ends."""
+    result = np.zeros((body.nodes, 4))
+    result[:, :3] = body.displacement(unknowns)
+    result[_corners(body), 3] = unknowns[3 * body.nodes :]
+    tets = body.mesh.tets
+    for k, (a, b) in enumerate(TET_EDGES):
+        result[tets[:, 4 + k], 3] = result[tets[:, [a, b]], 3].mean(axis=1)
+    return result
+
+
+def carried_over(coarse: Body, fine: Body, values: FloatArray) -> FloatArray:
+    """Values (n, k) of the nodes of the fine mesh, those of the coarse one interpolated."""
+    shapes = tetrahedron_values(_LATTICE)
+    tets = coarse.mesh.tets
+    places = np.einsum("qa,eai->eqi", shapes, coarse.mesh.points[tets]).reshape(-1, 3)
+    known = np.einsum("qa,eak->eqk", shapes, values[tets]).reshape(len(places), -1)
+    distances, nearest = KDTree(places).query(fine.mesh.points)
+    assert distances.max() < 1e-9 * np.ptp(places), "the fine mesh is the coarse one, halved"
+    return np.asarray(known[nearest])

@@ -13,7 +13,7 @@ from pagd.fem.continuation import Continuation, Step, StepControl
 from pagd.fem.linear_solver import linear_solver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
-from pagd.fem.term import EnergyTerm
+from pagd.fem.term import ElementSystem, EnergyTerm
 from pagd.materials import Elastomer
 from pagd.mesh.types import Mesh
 
@@ -120,6 +120,45 @@ def solve(
     solver.free()
     assert not path.failure, path.failure
     return [_solved(assembly, state, displacements) for state in states]
+
+
+def equilibrium(
+    terms: Sequence[EnergyTerm],
+    fixed: BoolArray,
+    load: float,
+    guess: FloatArray,
+    *,
+    tolerance: float,
+) -> Solved:
+    """The equilibrium at a load from a first guess near to it.
+
+    Parameters
+    ----------
+    terms
+        The potential; the solid of P2–P1 elements among them.
+    fixed
+        Which unknowns (size,) are held, at the values of the guess.
+    load
+        The load factor.
+    guess
+        All unknowns (size,); terms take their internal variables from them.
+    tolerance
+        Of Newton's method, in mm.
+    """
+    displacements = guess.size - sum(getattr(term, "pressures", 0) for term in terms)
+    assembly, solver = Assembly(terms, guess.size, fixed), linear_solver()
+    settings = NewtonSettings(tolerance=tolerance, iterations=15, largest_correction=1e3)
+    newton = Newton(assembly, solver, displacements, settings)
+    result = newton.solve(State(load, guess, tuple(_internal(t, guess, load) for t in terms)))
+    solver.free()
+    assert result.state, result.reason
+    return _solved(assembly, result.state, displacements)
+
+
+def _internal(term: EnergyTerm, unknowns: FloatArray, load: float) -> FloatArray:
+    """The internal variables that belong to the unknowns."""
+    term.linearize(unknowns, term.internal_at_rest(), load, ElementSystem.of(term.dofs))
+    return term.advance(np.zeros_like(unknowns))
 
 
 def _solved(assembly: Assembly, state: State, displacements: int) -> Solved:
