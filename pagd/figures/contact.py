@@ -46,7 +46,7 @@ def draw_contact(design_folder: Path, out: Path) -> None:
     """Draw the contact of a design to a PNG file; InputError if it was not solved."""
     steps = {"free": load_history(design_folder)}
     if has_blocked_force(design_folder):
-        steps["tip held"] = load_blocked_force(design_folder)
+        steps["held"] = load_blocked_force(design_folder)
     metrics = load_records(design_folder).get("metrics")
     first = metrics.figures.get("first_contact_pressure_kPa") if metrics else None
     shapes = Shapes.of(load_states(design_folder))
@@ -106,7 +106,7 @@ def picture_of_touching(shapes: Shapes, pixels: tuple[float, float]) -> tuple[Im
 
 def _draw_gaps(axes: Axes, analyses: Mapping[str, Steps], first_contact_kPa: float | None) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.9)
-    looks = {"free": (FREE, "o-"), "tip held": (BLOCKED, "s-")}
+    looks = {"free": (FREE, "o-"), "held": (BLOCKED, "s-")}
     for name, steps in analyses.items():
         colour, line = looks[name]
         axes.plot(

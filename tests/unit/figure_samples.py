@@ -150,7 +150,7 @@ def three_designs(root):
     (failed / "geometry").mkdir(parents=True)
     reason = "t_ab = 9 is <too thick> & leaves no cavity."
     write_record(record("failed", "geometry", Status.invalid_geometry, reason), failed / "geometry")
-    return [solved(root / "whole"), solved(root / "half", half=True), failed]
+    return [solved(root / "whole", blocked_force_N=0.69), solved(root / "half", half=True), failed]
 
 
 def path_of(stations, twist=0.0, bending=5.0):

@@ -195,12 +195,12 @@ def test_touching_parts_are_seen_through_the_body():
 
 
 def test_contact_shows_gaps_and_the_first_touch():
-    analyses = {"free": steps_of(), "tip held": steps_of()}
+    analyses = {"free": steps_of(), "held": steps_of()}
     figure = contact_figure("d", analyses, touching_shapes(0.05), 28.57)
     curve = figure.axes[0]
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
     assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
-    np.testing.assert_array_equal(lines["tip held"], STEPS)
+    np.testing.assert_array_equal(lines["held"], STEPS)
     assert "free, 30 kPa: 24 mm² of wall touch" in labels(figure)
     low, high = curve.get_ylim()
     assert low < 0.0 < high

@@ -438,15 +438,17 @@ def opened(page, folder, probe="", anchor=""):
 @needs_browser
 def test_page_draws_without_errors_in_a_browser(page, tmp_path):
     document = opened(page, tmp_path)
-    # Four plots of all designs; shape, angles, force, gap and volume of two designs.
-    assert document.count('class="plot-container') == 4 + 2 * 5
+    # Five plots of all designs, and their forces against bending; shape, angles, force, gap and
+    # volume of two designs.
+    assert document.count('class="plot-container') == 5 + 1 + 2 * 5
     assert document.count("<canvas") >= 2
     assert "30 kPa</output>" in document
     # The key of the designs is text of the page; no legend lies over a title of theirs.
     key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
     assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
-    # Angles have one, and gap and volume one each: of force there is one curve.
-    assert document.count('class="legend"') == 2 * 3
+    # Angles, gap and volume have one, of two designs, and so has the plot of all by mode; of force
+    # there is one curve.
+    assert document.count('class="legend"') == 2 * 3 + 1
 
 
 _PROBE = """

@@ -99,6 +99,23 @@ class Paths {
         ),
       );
     }
+    this.drawForces();
+  }
+
+  // Designs whose tip was not held have no line.
+  drawForces() {
+    const element = document.getElementById("plot-force");
+    if (!element) return;
+    const force = { hovertemplate: "%{x:.4~r} kPa: %{y:.3~r} N" };
+    const line = ({ steps: { held }, ...d }) =>
+      this.thin(curve(d, held.pressure_kPa, held.force_N, force));
+    this.redraw.push(
+      register(
+        element,
+        () => this.shown.filter((design) => design.steps.held).map(line),
+        () => flatLayout("Blocked force", axis("pressure, kPa"), axis("force, N"), plain),
+      ),
+    );
   }
 
   // Many lines are thin, and their markers small.

@@ -60,4 +60,5 @@ function drawClouds() {
   const bending = ["bending_deg", "bending, °"];
   drawCloud("plot-bending_twist", bending, ["twist_deg", "twist, °"]);
   drawCloud("plot-novelty_bending", ["novelty", "novelty"], bending);
+  drawCloud("plot-force_bending", bending, ["blocked_force_N", "blocked force, N"]);
 }

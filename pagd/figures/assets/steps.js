@@ -1,8 +1,8 @@
 // ---- steps of the analyses of one design ----------------------------------------------------
 
-const analysisNames = { free: "free", held: "tip held" };
+const analysisNames = { free: "free", held: "held" };
 
-// Title, what lies along, what is drawn, the analyses that know it, and how a point is told.
+// Title, what lies along, what is drawn, and how a point is told.
 const stepPlots = [
   {
     title: "Blocked force",
@@ -11,14 +11,14 @@ const stepPlots = [
     about: "%{y:.3~r} N at %{x:.4~r} kPa",
   },
   {
-    title: "Smallest gap between walls",
+    title: "Smallest gap",
     x: ["pressure_kPa", "pressure, kPa"],
     y: ["gap_mm", "gap, mm"],
     about: "%{y:.3~r} mm at %{x:.4~r} kPa",
   },
   {
-    title: "Pressure and cavity volume",
-    x: ["volume", "volume / volume without pressure"],
+    title: "Cavity volume",
+    x: ["volume", "cavity volume / unloaded volume"],
     y: ["pressure_kPa", "pressure, kPa"],
     about: "%{y:.4~r} kPa at %{x:.3~r} times the volume",
   },
@@ -38,23 +38,23 @@ function stepLine(name, steps, { x, y, about }) {
   };
 }
 
-// A plot of which no analysis knows anything is left out.
+function drawStepPlot(element, analyses, plot) {
+  const names = Object.keys(analyses).filter((name) => plot.y[0] in analyses[name]);
+  register(
+    element,
+    () => names.map((name) => stepLine(name, analyses[name], plot)),
+    () =>
+      flatLayout(plot.title, axis(plot.x[1]), axis(plot.y[1]), { showlegend: names.length > 1 }),
+  );
+}
+
+// A plot of which no analysis knows anything is left out. All places are there before the first is
+// drawn, or it would take the width of those to come.
 function drawSteps(box, analyses) {
   if (!box) return;
-  for (const plot of stepPlots) {
-    const names = Object.keys(analyses).filter((name) => plot.y[0] in analyses[name]);
-    if (!names.length) continue;
-    const element = document.createElement("div");
-    element.className = "plot";
-    box.append(element);
-    register(
-      element,
-      () => names.map((name) => stepLine(name, analyses[name], plot)),
-      () =>
-        flatLayout(plot.title, axis(plot.x[1]), axis(plot.y[1]), {
-          showlegend: names.length > 1,
-          legend: { x: 0.02, y: 0.98, bgcolor: "rgba(0,0,0,0)" },
-        }),
-    );
-  }
+  const known = ({ y: [key] }) => Object.values(analyses).some((steps) => key in steps);
+  const plots = stepPlots.filter(known).map((plot) => [document.createElement("div"), plot]);
+  for (const [element] of plots) element.className = "plot";
+  box.append(...plots.map(([element]) => element));
+  for (const [element, plot] of plots) drawStepPlot(element, analyses, plot);
 }

@@ -11,7 +11,7 @@ from typing import Any, Final
 from pagd.figures.captions import TOGETHER
 from pagd.figures.curves import curves_of
 from pagd.figures.groups import FEW, Entry, by_mode, line_looks, read_entries
-from pagd.figures.load import has_trajectory, load_trajectory
+from pagd.figures.load import has_blocked_force, has_trajectory, load_trajectory
 from pagd.figures.page.cards import card, json_text
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, generative_sections
 from pagd.figures.page.markup import Section, escaped, folded, numbered, section
@@ -48,6 +48,7 @@ _OF_POINT: Final = (
     "twist_deg",
     "novelty",
     "pressure_kPa",
+    "blocked_force_N",
 )
 
 
@@ -111,7 +112,11 @@ def _records(study: Study) -> list[Record | None]:
 
 
 def _performance(entries: Sequence[Entry], rows: Sequence[Row], study: Study) -> str:
-    plots = [_plot("bending_twist", rows, "twist_deg"), _plot("novelty_bending", rows, "novelty")]
+    plots = [
+        _plot("bending_twist", rows, "twist_deg"),
+        _plot("novelty_bending", rows, "novelty"),
+        _plot("force_bending", rows, "blocked_force_N"),
+    ]
     contact = contact_note(entries)
     return "".join(
         [
@@ -143,9 +148,9 @@ def _paths(entries: Sequence[Entry], pictures: Path | None) -> str:
     shown = embedded(pictures, ("trajectories", "angles", "forces"), TOGETHER)
     if not any(has_trajectory(entry.folder) for entry in entries):
         return shown
-    plots = "".join(
-        f'<div class="plot" id="plot-{n}"></div>' for n in ("side", "front", "bending", "twist")
-    )
+    held = any(has_blocked_force(entry.folder) for entry in entries)
+    names = ("side", "front", "bending", "twist", *(("force",) if held else ()))
+    plots = "".join(f'<div class="plot" id="plot-{name}"></div>' for name in names)
     return (
         '<div class="choice" id="groups" role="group" aria-label="designs shown"></div>'
         f'<ul id="key"></ul><div class="grid">{plots}</div>'
