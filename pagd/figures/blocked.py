@@ -106,14 +106,10 @@ def blocked_force_figure(title: str, analysis: Blocked, pair: Pair | None = None
 
 
 def _draw_curve(axes: Axes, analysis: Blocked) -> None:
-    steps, force = analysis.steps, analysis.steps.blocked_force_N
-    if force is None:
-        raise ValueError("the steps hold no blocked force")
-    pressure, kept = steps.pressure_kPa, steps.recorded
+    pressure, force = analysis.steps.forces
     axes.axhline(0.0, color=INK, linewidth=0.9)
-    axes.plot(pressure, force, "-", color=BLOCKED, linewidth=1.4)
-    axes.plot(pressure[kept], force[kept], "o", color=BLOCKED, markersize=4.5)
-    end = f"{number(float(force[-1]), 2)} N at {kilopascals(pressure[-1])}"
+    axes.plot(pressure, force, "o-", color=BLOCKED, linewidth=1.4, markersize=4.5)
+    end = f"{number(float(force[-1]), 3)} N at {kilopascals(pressure[-1])}"
     early = "" if analysis.status == "ok" else f"\nended there: {analysis.status}"
     axes.annotate(
         end + early,

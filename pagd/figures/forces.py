@@ -58,9 +58,7 @@ def forces_figure(groups: Mapping[str, Sequence[Entry]], steps: Mapping[str, Ste
 
 
 def _draw(axes: Axes, entry: Entry, steps: Steps, line: Line) -> None:
-    if steps.blocked_force_N is None:
-        raise ValueError(f"{entry.name}: the steps hold no blocked force")
-    pressure, force = steps.pressure_kPa, steps.blocked_force_N
+    pressure, force = steps.forces
     width = 1.8 if entry.is_known else 1.1
     axes.plot(
         pressure, force, color=line.colour, linestyle=line.dash, linewidth=width, label=entry.name

@@ -84,7 +84,7 @@ class Steps:
     pressure_kPa, cavity_volume_mm3, work_mJ: (k,) of the whole actuator.
     recorded: (k,) whether the state was kept.
     smallest_gap_mm: (k,) between walls, negative for a penetration; NaN where none are near.
-    blocked_force_N: (k,) on the support; None of a free actuation.
+    blocked_force_N: (k,) on the support, NaN but in recorded states; None of a free actuation.
     """
 
     pressure_kPa: FloatArray
@@ -93,6 +93,14 @@ class Steps:
     recorded: NDArray[np.bool_]
     smallest_gap_mm: FloatArray
     blocked_force_N: FloatArray | None = None
+
+    @property
+    def forces(self) -> tuple[FloatArray, FloatArray]:
+        """Pressures and blocked forces (f,) of the states that have one."""
+        if self.blocked_force_N is None:
+            return np.zeros(0), np.zeros(0)
+        known = np.isfinite(self.blocked_force_N)
+        return self.pressure_kPa[known], self.blocked_force_N[known]
 
 
 def load_records(folder: Path) -> dict[str, Record]:

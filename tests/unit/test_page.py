@@ -149,7 +149,7 @@ def test_page_tells_of_every_design(page):
     # What there is nothing of has no section.
     expected = ["What was run", "Performance", "Trajectories, angles and forces", "Each design"]
     assert titles_of(text) == expected
-    assert text.count("Blocked force (lower edge of the tip held): 0.69 N at 30 kPa.") == 2
+    assert text.count("Blocked force (lower edge of the tip held): 0.690 N at 30 kPa.") == 2
     assert "Contact was off" not in text
     steps = [set(d["steps"]) for d in data_of(text)["designs"]]
     assert steps == [{"free", "held"}, {"free", "held"}, set()]
@@ -212,7 +212,7 @@ def test_table_has_force_contact_and_penetration_with_their_units():
     ]
     head, first, second = re.findall(r"<tr>.*?</tr>", results_table(rows), re.DOTALL)
     assert cells(head)[2:] == ["blocked forceN", "first contactkPa", "penetrationmm"]
-    assert cells(first)[2:] == ["1.23", "31.3", "0.012"]
+    assert cells(first)[2:] == ["1.234", "31.3", "0.012"]
     assert cells(second)[2:] == ["–", "–", "–"]
     assert 'data-order="31.26"' in first
 

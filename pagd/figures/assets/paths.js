@@ -106,7 +106,7 @@ class Paths {
   drawForces() {
     const element = document.getElementById("plot-force");
     if (!element) return;
-    const force = { hovertemplate: "%{x:.4~r} kPa: %{y:.3~r} N" };
+    const force = { connectgaps: true, hovertemplate: "%{x:.4~r} kPa: %{y:.3~r} N" };
     const line = ({ steps: { held }, ...d }) =>
       this.thin(curve(d, held.pressure_kPa, held.force_N, force));
     this.redraw.push(

@@ -29,6 +29,7 @@ function stepLine(name, steps, { x, y, about }) {
   return {
     type: "scatter",
     mode: "lines+markers",
+    connectgaps: true, // the force is known of recorded states alone
     name: analysisNames[name],
     x: steps[x[0]],
     y: steps[y[0]],

@@ -75,7 +75,7 @@ def _blocked(settings: Mapping[str, Any], ending: Mapping[str, Any] | None) -> s
     force, pressure = ending.get("blocked_force_N"), ending.get("pressure_kPa")
     told = f"Blocked force ({support})"
     if force is not None and pressure is not None:
-        told += f": {number(force, 2)} N at {kilopascals(pressure)}"
+        told += f": {number(force, 3)} N at {kilopascals(pressure)}"
     if ending.get("status") == "ok":
         return f"{told}."
     why = str(ending.get("status")).replace("_", " ")

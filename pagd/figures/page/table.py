@@ -31,7 +31,7 @@ _COLUMNS: Final = (
     _Column("pressure", "kPa", "pressure_kPa", _number(0)),
     _Column("bending", "°", "bending_deg", _number(1)),
     _Column("twist", "°", "twist_deg", _number(1)),
-    _Column("blocked force", "N", "blocked_force_N", _number(2)),
+    _Column("blocked force", "N", "blocked_force_N", _number(3)),
     _Column("tip x", "mm", "tip_x_mm", _number(1)),
     _Column("tip y", "mm", "tip_y_mm", _number(1)),
     _Column("tip z", "mm", "tip_z_mm", _number(1)),
