@@ -110,20 +110,22 @@ def _first_crossing(
     faces: FloatArray,
     low: FloatArray,
     high: FloatArray,
-    along: FloatArray,
+    starts: FloatArray,
+    ends: FloatArray,
     far: float,
     first: IntArray,
     second: IntArray,
 ) -> tuple[int, int]:
-    """Two faces that cross, ``far`` apart ``along`` the actuator; (−1, −1) if there are none.
+    """Two faces that cross, more than ``far`` between them; (−1, −1) if there are none.
 
-    ``faces`` (F, 6, 3) with their boxes; those numbered from first[0] to first[1] are compared
-    with those from second[0] to second[1].
+    ``faces`` (F, 6, 3) with their boxes, and where they start and end along the undeformed
+    actuator; those numbered from first[0] to first[1] are compared with those from second[0] to
+    second[1].
     """
     work = np.empty((5, 3))
     for i in range(first[0], first[1]):
         for j in range(second[0], second[1]):
-            if along[j] - along[i] <= far or _apart(low[i], high[i], low[j], high[j]):
+            if starts[j] - ends[i] <= far or _apart(low[i], high[i], low[j], high[j]):
                 continue
             if _cross_each_other(faces[i], faces[j], work):
                 return i, j
@@ -171,10 +173,11 @@ class SelfCollision:
                 f"{', '.join(sorted(mesh.surfaces)) or 'none'}."
             )
         faces = np.vstack(outside)
-        along = mesh.points[faces, 0].mean(axis=1)
-        order = np.argsort(along, kind="stable")
+        # Two faces are as far apart as their nearest nodes: faces of one node never count.
+        self._faces = faces[np.argsort(mesh.points[faces, 0].mean(axis=1), kind="stable")]
         self._points = mesh.points
-        self._faces, self._along = faces[order], along[order]
+        along = mesh.points[self._faces, 0]
+        self._begins, self._ends = along.min(axis=1), along.max(axis=1)
         self._far = _FAR_SHARE * float(np.ptp(mesh.points[:, 0]))
         self._starts = np.unique(np.linspace(0, len(faces), _SLICES + 1).astype(np.int64))
         self._slices = self._far_slices()
@@ -188,7 +191,8 @@ class SelfCollision:
                 faces,
                 low,
                 high,
-                self._along,
+                self._begins,
+                self._ends,
                 self._far,
                 self._starts[first : first + 2],
                 self._starts[second : second + 2],
@@ -199,7 +203,8 @@ class SelfCollision:
 
     def _far_slices(self) -> IntArray:
         """Pairs (p, 2) of slices that hold faces far enough apart, the lower one first."""
-        nearest, farthest = self._along[self._starts[:-1]], self._along[self._starts[1:] - 1]
+        nearest = np.minimum.reduceat(self._ends, self._starts[:-1])
+        farthest = np.maximum.reduceat(self._begins, self._starts[:-1])
         return np.argwhere(farthest[None, :] - nearest[:, None] > self._far)
 
     def _near_slices(self, low: FloatArray, high: FloatArray) -> IntArray:

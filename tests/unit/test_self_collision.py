@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pagd.errors import InputError, Status
-from pagd.mesh.primitives import box, grid
+from pagd.mesh.primitives import box, grid, hollow_block
 from pagd.mesh.quadratic import quadratic_mesh
 from pagd.mesh.topology import boundary_faces
 from pagd.mesh.types import Mesh
@@ -141,6 +141,13 @@ def test_neighbouring_walls_may_overlap() -> None:
 def test_nothing_collides_at_rest(whole: Mesh) -> None:
     for mesh in (whole, strip(half=True), comb()):
         assert SelfCollision(mesh).find(np.zeros_like(mesh.points)) is None
+
+
+def test_faces_with_a_common_node_never_collide() -> None:
+    """Of a short actuator, in large faces: their middles are far apart, they themselves are not."""
+    short = hollow_block((12.0, 6.0, 6.0), (3, 3, 3), ((1, 2), (1, 2), (1, 2)), 1)
+    moved = np.random.default_rng(0).uniform(-0.3, 0.3, short.points.shape)
+    assert SelfCollision(short).find(moved) is None
 
 
 def test_the_cavity_and_the_paper_are_not_outside(whole: Mesh) -> None:
