@@ -16,6 +16,7 @@ from pagd.errors import InputError
 
 __all__ = [
     "check_design",
+    "deck",
     "figures",
     "geometry",
     "mesh",
@@ -97,6 +98,31 @@ def solve(options: Namespace) -> int:
         progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
     )
     return verdict(record, options.keep_going)
+
+
+def deck(options: Namespace) -> int:
+    """Write an input deck with the materials and recorded pressures of a configuration."""
+    from pagd.actuation import Actuation
+    from pagd.deck import write_deck
+    from pagd.mesh.msh import read_msh
+    from pagd.stages.mesh import mesh_file
+    from pagd.stages.solve import materials_of
+
+    config = config_of(options)
+    materials = materials_of(config, options.material, options.paper)
+    names = ("maximum_pressure_kPa", "recorded_step_kPa")
+    pressures = Actuation(**{name: config["solve"][name] for name in names}).recorded_kPa()
+    write_deck(
+        options.out,
+        read_msh(mesh_file(options.mesh)),
+        materials.elastomer,
+        materials.paper,
+        pressures.tolist(),
+        solid_element=options.solid_element,
+        sheet_element=options.sheet_element,
+        stress_unit=options.stress_unit,
+    )
+    return 0
 
 
 def metrics(options: Namespace) -> int:

@@ -48,6 +48,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_repair(commands)
     _add_mesh(commands)
     _add_solve(commands)
+    _add_deck(commands)
     _add_metrics(commands)
     _add_figures(commands)
     _add_gathering(commands)
@@ -136,6 +137,17 @@ def _add_solve(commands: Any) -> None:
 
 
 def _add_solve_options(command: argparse.ArgumentParser) -> None:
+    group = _add_analysis(command)
+    override(group, "solve", "element", str, "taylor_hood or element_pressure")
+    override(group, "solve", "blocked_force", str, "what holds the tip: edge, plate or none")
+    group.add_argument(
+        "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
+    )
+    group.add_argument("--vtu", action="store_true", help="also write the states for ParaView")
+
+
+def _add_analysis(command: argparse.ArgumentParser) -> Any:
+    """Add materials and pressure; return the group for more."""
     group = command.add_argument_group("analysis (instead of the configuration's values)")
     for use, what in (("material", "elastomer"), ("paper", "sheet in the base")):
         group.add_argument(
@@ -153,12 +165,30 @@ def _add_solve_options(command: argparse.ArgumentParser) -> None:
         metavar="P",
         help="pressure at the end",
     )
-    override(group, "solve", "element", str, "taylor_hood or element_pressure")
-    override(group, "solve", "blocked_force", str, "what holds the tip: edge, plate or none")
-    group.add_argument(
-        "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
+    return group
+
+
+def _add_deck(commands: Any) -> None:
+    deck = add_command(commands, "deck", "deck", "input deck of an actuator for CalculiX or Abaqus")
+    deck.add_argument(
+        "--mesh",
+        type=Path,
+        required=True,
+        help="folder of the stage mesh, or a .msh file with surfaces fixed, cavity, paper, …",
     )
-    group.add_argument("--vtu", action="store_true", help="also write the states for ParaView")
+    deck.add_argument("--out", type=Path, required=True, metavar="FILE", help="deck to write")
+    _add_analysis(deck)
+    form = deck.add_argument_group("form of the deck")
+    for option, default, text in (
+        ("solid-element", "C3D10", "tetrahedron: C3D10, or C3D10H and C3D10HS for Abaqus"),
+        ("sheet-element", "S6", "paper: S6, or STRI65 for Abaqus; M3D6 is a membrane in both"),
+        ("stress-unit", "MPa", "MPa, kPa or Pa; lengths are in mm"),
+    ):
+        form.add_argument(
+            f"--{option}", default=default, metavar="NAME", help=f"{text} (default: {default})"
+        )
+    add_config(deck)
+    add_verbose(deck)
 
 
 def _add_metrics(commands: Any) -> None:
