@@ -25,8 +25,9 @@ OF_DESIGN: Final[Mapping[str, str]] = {
     " finite strain. Colour: largest principal logarithmic strain; its bar ends where 1 % of the"
     " nodes are beyond.",
     "contact": "Left: the smallest gap between walls that face each other; what is below zero is"
-    " penetration, by which the penalty of frictionless contact works. Right: the free actuator at"
-    " the last pressure, transparent; red: outside that is nearer than 0.1 mm to another wall.",
+    " penetration, by which the penalty of frictionless contact works. Right: the actuator at the"
+    " last pressure of each analysis, transparent; red: outside that is nearer than 0.1 mm to"
+    " another wall, both sides counted.",
     "blocked_force": "Left: the force of the actuator on what holds its tip from the start,"
     " positive downwards; dots are recorded states. Right: the last shape so held, beside the free"
     " one at the nearest recorded pressure, undeformed in grey.",

@@ -12,7 +12,9 @@ from pagd.figures.deformed import VIEW, Shapes, draw_triad
 from pagd.figures.load import (
     Steps,
     has_blocked_force,
+    has_blocked_states,
     load_blocked_force,
+    load_blocked_states,
     load_history,
     load_records,
     load_states,
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["contact_figure", "draw_contact", "picture_of_touching"]
 
 _TOUCHING = "#c4303f"
+# Colour and line of an analysis.
+_LOOKS = {"free": (FREE, "o-"), "held": (BLOCKED, "s-")}
 # Inches: width of the curve's panel, and of the shape's; height of the picture, at most.
 _CURVE, _SHAPE, _HEIGHT = 4.6, 6.4, 4.6
 
@@ -45,40 +49,49 @@ _CURVE, _SHAPE, _HEIGHT = 4.6, 6.4, 4.6
 def draw_contact(design_folder: Path, out: Path) -> None:
     """Draw the contact of a design to a PNG file; InputError if it was not solved."""
     steps = {"free": load_history(design_folder)}
+    shapes = {"free": Shapes.of(load_states(design_folder))}
     if has_blocked_force(design_folder):
         steps["held"] = load_blocked_force(design_folder)
+    if has_blocked_states(design_folder):
+        shapes["held"] = Shapes.of(load_blocked_states(design_folder))
     metrics = load_records(design_folder).get("metrics")
     first = metrics.figures.get("first_contact_pressure_kPa") if metrics else None
-    shapes = Shapes.of(load_states(design_folder))
     save(contact_figure(design_folder.name, steps, shapes, first), out)
 
 
 def contact_figure(
-    title: str, analyses: Mapping[str, Steps], shapes: Shapes, first_contact_kPa: float | None
+    heading: str,
+    analyses: Mapping[str, Steps],
+    shapes: Mapping[str, Shapes],
+    first_contact_kPa: float | None,
 ) -> Figure:
-    """Return the picture: the gap over pressure on the left, the last shape on the right.
+    """Return the picture: the gap over pressure on the left, the last shapes on the right.
 
     Parameters
     ----------
-    title
+    heading
         Name of the design.
     analyses
-        Steps with their gaps, by the name of the analysis.
+        Steps with their gaps, by the name of the analysis: free, held.
     shapes
-        Of the free actuation.
+        The same for shapes.
     first_contact_kPa
         Pressure at which walls first touch in free actuation; None where none do.
     """
     figure = new_figure(_CURVE + _SHAPE, _HEIGHT)
-    curve, place = figure.subplots(1, 2, width_ratios=[_CURVE, _SHAPE])
+    width = _SHAPE / len(shapes)
+    curve, *places = figure.subplots(
+        1, 1 + len(shapes), width_ratios=[_CURVE, *(width for _ in shapes)]
+    )
     _draw_gaps(curve, analyses, first_contact_kPa)
-    image, area = picture_of_touching(shapes, (225.0 * _SHAPE, 225.0 * _HEIGHT))
-    place.imshow(image)
-    place.set_axis_off()
-    last = kilopascals(shapes.pressure_kPa[-1])
-    there = f"{number(area, 0)} mm² of wall touch" if area else "no walls touch"
-    place.set_title(f"free, {last}: {there}")
-    figure.suptitle(f"{title}: contact between walls", fontweight="bold")
+    for place, (name, shape) in zip(places, shapes.items(), strict=True):
+        image, area = picture_of_touching(shape, (225.0 * width, 225.0 * _HEIGHT))
+        place.imshow(image)
+        place.set_axis_off()
+        there = f"{number(area, 0)} mm² in contact" if area else "no contact"
+        title = f"{name}, {kilopascals(shape.pressure_kPa[-1])}: {there}"
+        place.set_title(title, color=_LOOKS[name][0])
+    figure.suptitle(f"{heading}: contact between walls", fontweight="bold")
     draw_triad(figure, VIEW, left=(_CURVE + 0.3) / (_CURVE + _SHAPE))
     return figure
 
@@ -106,9 +119,8 @@ def picture_of_touching(shapes: Shapes, pixels: tuple[float, float]) -> tuple[Im
 
 def _draw_gaps(axes: Axes, analyses: Mapping[str, Steps], first_contact_kPa: float | None) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.9)
-    looks = {"free": (FREE, "o-"), "held": (BLOCKED, "s-")}
     for name, steps in analyses.items():
-        colour, line = looks[name]
+        colour, line = _LOOKS[name]
         axes.plot(
             steps.pressure_kPa,
             steps.smallest_gap_mm,

@@ -200,20 +200,21 @@ def test_touching_parts_are_seen_through_the_body():
 
 def test_contact_shows_gaps_and_the_first_touch():
     analyses = {"free": steps_of(), "held": steps_of()}
-    figure = contact_figure("d", analyses, touching_shapes(0.05), 28.57)
+    shapes = {"free": touching_shapes(0.5), "held": touching_shapes(0.05)}
+    figure = contact_figure("d", analyses, shapes, 28.57)
     curve = figure.axes[0]
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
     assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
     np.testing.assert_array_equal(lines["held"], STEPS)
-    assert "free, 30 kPa: 24 mm² of wall touch" in labels(figure)
+    assert {"free, 30 kPa: no contact", "held, 30 kPa: 24 mm² in contact"} <= set(labels(figure))
     low, high = curve.get_ylim()
     assert low < 0.0 < high
 
 
 def test_walls_that_never_come_near_are_said_to():
     shapes = Shapes.of(states_of(sample_block(half=False)))
-    figure = contact_figure("d", {"free": steps_of(contact=False)}, shapes, None)
-    assert {"no two walls come near", "free, 30 kPa: no walls touch"} <= set(labels(figure))
+    figure = contact_figure("d", {"free": steps_of(contact=False)}, {"free": shapes}, None)
+    assert {"no two walls come near", "free, 30 kPa: no contact"} <= set(labels(figure))
 
 
 # ---- blocked force --------------------------------------------------------------------------
@@ -325,11 +326,11 @@ def told(folder):
 def test_a_design_is_told_by_what_its_records_say(tmp_path):
     touched = solved(tmp_path / "touched", first_contact_pressure_kPa=28.6)
     assert told(touched) == (
-        "Walls first touch at 28.6 kPa and penetrate by at most 0.010 mm, 5.0 % of the gap between"
-        " them. Blocked force (lower edge of the tip held): 0.690 N at 30 kPa."
+        "In free actuation walls first touch at 28.6 kPa and penetrate by at most 0.010 mm, 5.0 %"
+        " of the gap between them. Blocked force (lower edge of the tip held): 0.690 N at 30 kPa."
     )
     assert told(solved(tmp_path / "clear", support="none")) == (
-        "No walls touched. No blocked force was asked for."
+        "No walls touched in free actuation. No blocked force was asked for."
     )
     assert told(solved(tmp_path / "off", contact=False)).startswith(
         "Contact was off: walls that balloon may overlap."
@@ -343,8 +344,8 @@ def test_limit_points_and_an_early_end_are_told(tmp_path):
     limits = {"limit_points": 1, "volume_controlled_from_kPa": 19.5}
     write_record(solve_record("d", **limits, **ending), folder / "solve")
     assert told(folder) == (
-        "No walls touched. The pressure has 1 limit point. From 19.5 kPa on the volume was"
-        " controlled. Blocked force (on a rigid plate): 0.500 N at 20 kPa, where it ended: not"
+        "No walls touched in free actuation. The pressure has 1 limit point. From 19.5 kPa on the"
+        " volume was controlled. Blocked force (on a rigid plate): 0.500 N at 20 kPa, where it ended: not"
         " converged. The step fell."
     )
 

@@ -52,9 +52,9 @@ _WITHOUT_CONTACT = "Contact was off: walls that balloon may overlap."
 
 def _contact(first_kPa: float | None, figures: Mapping[str, Any]) -> str:
     if first_kPa is None:
-        return "No walls touched."
+        return "No walls touched in free actuation."
     depth, share = figures.get("deepest_penetration_mm"), figures.get("penetration_share")
-    told = f"Walls first touch at {kilopascals(first_kPa)}"
+    told = f"In free actuation walls first touch at {kilopascals(first_kPa)}"
     if depth is not None:
         told += f" and penetrate by at most {number(depth, 3)} mm"
         told += "" if share is None else f", {_percent(share)} of the gap between them"
