@@ -345,8 +345,8 @@ def test_limit_points_and_an_early_end_are_told(tmp_path):
     write_record(solve_record("d", **limits, **ending), folder / "solve")
     assert told(folder) == (
         "No walls touched in free actuation. The pressure has 1 limit point. From 19.5 kPa on the"
-        " volume was controlled. Blocked force (on a rigid plate): 0.500 N at 20 kPa, where it ended: not"
-        " converged. The step fell."
+        " volume was controlled. Blocked force (on a rigid plate): 0.500 N at 20 kPa, where it"
+        " ended: not converged. The step fell."
     )
 
 
