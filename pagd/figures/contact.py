@@ -10,6 +10,7 @@ import numpy as np
 
 from pagd.figures.deformed import VIEW, Shapes, draw_triad
 from pagd.figures.load import (
+    States,
     Steps,
     has_blocked_force,
     has_blocked_states,
@@ -31,7 +32,7 @@ from pagd.figures.style import (
     number,
     save,
 )
-from pagd.figures.touching import touching_triangles
+from pagd.figures.touching import outside_faces, touching_triangles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,20 +50,20 @@ _CURVE, _SHAPE, _HEIGHT = 4.6, 6.4, 4.6
 def draw_contact(design_folder: Path, out: Path) -> None:
     """Draw the contact of a design to a PNG file; InputError if it was not solved."""
     steps = {"free": load_history(design_folder)}
-    shapes = {"free": Shapes.of(load_states(design_folder))}
+    states = {"free": load_states(design_folder)}
     if has_blocked_force(design_folder):
         steps["held"] = load_blocked_force(design_folder)
     if has_blocked_states(design_folder):
-        shapes["held"] = Shapes.of(load_blocked_states(design_folder))
+        states["held"] = load_blocked_states(design_folder)
     metrics = load_records(design_folder).get("metrics")
     first = metrics.figures.get("first_contact_pressure_kPa") if metrics else None
-    save(contact_figure(design_folder.name, steps, shapes, first), out)
+    save(contact_figure(design_folder.name, steps, states, first), out)
 
 
 def contact_figure(
     heading: str,
     analyses: Mapping[str, Steps],
-    shapes: Mapping[str, Shapes],
+    states: Mapping[str, States],
     first_contact_kPa: float | None,
 ) -> Figure:
     """Return the picture: the gap over pressure on the left, the last shapes on the right.
@@ -73,44 +74,45 @@ def contact_figure(
         Name of the design.
     analyses
         Steps with their gaps, by the name of the analysis: free, held.
-    shapes
-        The same for shapes.
+    states
+        Their states, the same way.
     first_contact_kPa
         Pressure at which walls first touch in free actuation; None where none do.
     """
     figure = new_figure(_CURVE + _SHAPE, _HEIGHT)
-    width = _SHAPE / len(shapes)
+    width = _SHAPE / len(states)
     curve, *places = figure.subplots(
-        1, 1 + len(shapes), width_ratios=[_CURVE, *(width for _ in shapes)]
+        1, 1 + len(states), width_ratios=[_CURVE, *(width for _ in states)]
     )
     _draw_gaps(curve, analyses, first_contact_kPa)
-    for place, (name, shape) in zip(places, shapes.items(), strict=True):
-        image, area = picture_of_touching(shape, (225.0 * width, 225.0 * _HEIGHT))
+    for place, (name, kept) in zip(places, states.items(), strict=True):
+        image, area = picture_of_touching(kept, (225.0 * width, 225.0 * _HEIGHT))
         place.imshow(image)
         place.set_axis_off()
         there = f"{number(area, 0)} mm² in contact" if area else "no contact"
-        title = f"{name}, {kilopascals(shape.pressure_kPa[-1])}: {there}"
+        title = f"{name}, {kilopascals(kept.pressure_kPa[-1])}: {there}"
         place.set_title(title, color=_LOOKS[name][0])
     figure.suptitle(f"{heading}: contact between walls", fontweight="bold")
     draw_triad(figure, VIEW, left=(_CURVE + 0.3) / (_CURVE + _SHAPE))
     return figure
 
 
-def picture_of_touching(shapes: Shapes, pixels: tuple[float, float]) -> tuple[Image, float]:
-    """Return the last shape, transparent, with what touches in red, and its area in mm².
+def picture_of_touching(states: States, pixels: tuple[float, float]) -> tuple[Image, float]:
+    """Return the last state, transparent, with what touches in red, and its area in mm².
 
     `pixels` are the largest width and height. Touching walls are two, and their areas are added.
     """
+    shapes = Shapes.of(states)
     points = shapes.points[-1]
     box = VIEW.box(points).widened(0.02)
     parts: list[Sheet | Wire] = [
         Sheet(points=points, triangles=shapes.triangles, colour=BASE, opacity=0.18),
         Wire(points=points, edges=shapes.edges, colour=FAINT),
     ]
-    where, triangles = touching_triangles(points, shapes.triangles)
-    if len(triangles):
+    corners = touching_triangles(outside_faces(states.mesh, states.displacement[-1]))
+    if len(corners):
+        where, triangles = corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
         parts.insert(0, Sheet(points=where, triangles=triangles, colour=_TOUCHING, smooth=False))
-    corners = where[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = float(np.linalg.norm(across, axis=1).sum() / 2.0)
     scale = min(pixels[0] / box.width, pixels[1] / box.height)

@@ -6,7 +6,17 @@ import json
 import numpy as np
 import pytest
 import pyvista as pv
-from figure_samples import FORCE, STEPS, path_only, record, solve_record, solved, states_of, steps
+from figure_samples import (
+    FORCE,
+    SIZE,
+    STEPS,
+    path_only,
+    record,
+    solve_record,
+    solved,
+    states_of,
+    steps,
+)
 from figure_samples import block as sample_block
 from matplotlib.text import Text
 
@@ -26,7 +36,7 @@ from pagd.figures.pressure_volume import (
     pressure_volume_figure,
     volume_controlled,
 )
-from pagd.figures.touching import refined, touching_triangles
+from pagd.figures.touching import outside_faces, refined, touching_triangles
 from pagd.record import write_record
 from pagd.stages import figures as stage
 from pagd.tables import TRAJECTORY, write_table
@@ -135,16 +145,22 @@ def test_a_rising_path_has_no_limit_in_its_picture():
 # ---- contact --------------------------------------------------------------------------------
 
 
+def with_middles(corners):
+    """Flat six-node faces (t, 6, 3) of triangles (t, 3, 3)."""
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    return np.concatenate([corners, middles], axis=1)
+
+
 def two_boxes(gap):
-    """Two boxes, the faces of 3 × 4 mm between them `gap` apart."""
+    """Faces of two boxes, those of 3 × 4 mm between them `gap` apart."""
     left = pv.Box((0.0, 5.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
     right = pv.Box((5.0 + gap, 9.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
     both = left.append_polydata(right)
-    return np.asarray(both.points, dtype=float), both.faces.reshape(-1, 4)[:, 1:].astype(np.int64)
+    return with_middles(np.asarray(both.points, float)[both.faces.reshape(-1, 4)[:, 1:]])
 
 
-def area(points, triangles):
-    a, b, c = (points[triangles[:, i]] for i in range(3))
+def area(triangles):
+    a, b, c = (triangles[:, i] for i in range(3))
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
 
 
@@ -152,10 +168,10 @@ def area(points, triangles):
     ("gap", "expected"), [(0.05, 24.0), (0.0, 24.0), (-0.05, 24.0), (0.15, 0.0), (1.0, 0.0)]
 )
 def test_touching_faces_are_the_two_between(gap, expected):
-    points, triangles = touching_triangles(*two_boxes(gap))
-    assert area(points, triangles) == pytest.approx(expected, rel=0.02)
+    triangles = touching_triangles(two_boxes(gap))
+    assert area(triangles) == pytest.approx(expected, rel=0.02)
     if expected:
-        assert np.abs(points[:, 0] - 5.0 - gap / 2).max() < 0.1
+        assert np.abs(triangles[..., 0] - 5.0 - gap / 2).max() < 0.1
 
 
 def test_the_sides_of_a_sharp_edge_do_not_touch():
@@ -164,32 +180,67 @@ def test_the_sides_of_a_sharp_edge_do_not_touch():
         np.array([[0, 0, 0], [6, 0, 0], [6, 6, 0], [0, 0, 6], [6, 0, 6], [6, 6, 6.0]]),
         faces=[3, 0, 2, 1, 3, 3, 4, 5, 4, 0, 1, 4, 3, 4, 1, 2, 5, 4, 4, 0, 3, 5, 2],
     ).triangulate()
-    triangles = wedge.faces.reshape(-1, 4)[:, 1:].astype(np.int64)
-    assert area(wedge.points, triangles) > 100.0
-    assert len(touching_triangles(np.asarray(wedge.points, float), triangles)[1]) == 0
+    corners = np.asarray(wedge.points, float)[wedge.faces.reshape(-1, 4)[:, 1:]]
+    assert area(corners) > 100.0
+    assert len(touching_triangles(with_middles(corners))) == 0
 
 
-def test_refined_triangles_cover_the_same_area():
-    points, triangles = two_boxes(1.0)
-    fine = refined(points[triangles], 0.6)
-    sides = np.linalg.norm(fine - np.roll(fine, 1, axis=1), axis=2)
+def test_a_wall_touches_with_its_bulge():
+    """The six nodes of the bulge are 0.5 mm and more away from the flat wall, its middle is not."""
+    x = np.array([[-4, -3], [4, -3], [0, 5], [0, -3], [2, 1], [-2, 1]], dtype=float)
+    top = 0.5 * (x**2).sum(axis=1)
+    bulge = np.column_stack([x, top])
+    flat = with_middles(np.array([[[-9, -9, -0.05], [0, 9, -0.05], [9, -9, -0.05]]])[:, [0, 2, 1]])
+    found = touching_triangles(np.concatenate([bulge[None, [0, 2, 1, 5, 4, 3]], flat]))
+    assert top.min() > 0.5
+    middles = found.mean(axis=1)
+    # Where the paraboloid x² / 2 is nearer than 0.1 mm to the wall: within 0.32 mm.
+    assert len(found) > 0
+    assert np.linalg.norm(middles[:, :2], axis=1).max() < 0.9
+
+
+def test_refined_triangles_lie_on_the_curved_face():
+    x = np.array([[0, 0], [4, 0], [0, 4], [2, 0], [2, 2], [0, 2]], dtype=float)
+    face = np.column_stack([x, (x**2).sum(axis=1) / 8])
+    fine = refined(face[None], 0.6)
+    sides = np.linalg.norm((fine - np.roll(fine, 1, axis=1))[..., :2], axis=2)
     assert sides.max() <= 0.6
-    flat = fine.reshape(-1, 3), np.arange(3 * len(fine)).reshape(-1, 3)
-    assert area(*flat) == pytest.approx(area(points, triangles))
+    np.testing.assert_allclose(fine[..., 2], (fine[..., :2] ** 2).sum(axis=-1) / 8, atol=1e-12)
+    flat = fine * [1.0, 1.0, 0.0]
+    assert area(flat) == pytest.approx(8.0)
 
 
-def touching_shapes(gap):
-    points, triangles = two_boxes(gap)
-    states = np.stack([points, points])
-    edges = np.zeros((0, 2), np.int64)
-    return Shapes(np.array([0.0, 30.0]), states, np.zeros((2, len(points))), triangles, edges)
+@pytest.mark.parametrize("half", [False, True])
+def test_faces_seen_from_outside_close_the_body(half):
+    mesh = sample_block(half)
+    faces = outside_faces(mesh, np.zeros_like(mesh.points))
+    a, b, c = (faces[:, i] for i in range(3))
+    volume = np.einsum("ij,ij->", np.cross(a, b), c) / 6
+    assert volume == pytest.approx(SIZE[0] * SIZE[1] * SIZE[2] * (2 if half else 1))
+
+
+def touching_states(gap):
+    """Two blocks, one above the other, that a pressure has brought near."""
+    mesh = sample_block(half=False)
+    size = len(mesh.points)
+    above = mesh.points + np.array([0.0, 0.0, SIZE[2] + 3.0])
+    surfaces = {name: np.vstack([f, f + size]) for name, f in mesh.surfaces.items()}
+    both = dataclasses.replace(
+        mesh,
+        points=np.vstack([mesh.points, above]),
+        tets=np.vstack([mesh.tets, mesh.tets + size]),
+        surfaces=surfaces,
+    )
+    moved = np.zeros((2, 2 * size, 3))
+    moved[1, size:, 2] = gap - 3.0
+    return load.States(both, np.array([0.0, 30.0]), moved, np.zeros((2, 2 * size)))
 
 
 def test_touching_parts_are_seen_through_the_body():
     (red, wall), (pale, none) = (
-        picture_of_touching(touching_shapes(gap), (300.0, 300.0)) for gap in (0.05, 0.5)
+        picture_of_touching(touching_states(gap), (300.0, 300.0)) for gap in (0.05, 0.5)
     )
-    assert (wall, none) == (pytest.approx(24.0, rel=0.02), 0.0)
+    assert (wall, none) == (pytest.approx(2 * SIZE[0] * SIZE[1], rel=0.02), 0.0)
     reddish = [
         np.sum((image[..., 0].astype(int) - image[..., 2] > 60) & (image[..., 3] > 0))
         for image in (red, pale)
@@ -200,20 +251,20 @@ def test_touching_parts_are_seen_through_the_body():
 
 def test_contact_shows_gaps_and_the_first_touch():
     analyses = {"free": steps_of(), "held": steps_of()}
-    shapes = {"free": touching_shapes(0.5), "held": touching_shapes(0.05)}
-    figure = contact_figure("d", analyses, shapes, 28.57)
+    states = {"free": touching_states(0.5), "held": touching_states(0.05)}
+    figure = contact_figure("d", analyses, states, 28.57)
     curve = figure.axes[0]
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
     assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
     np.testing.assert_array_equal(lines["held"], STEPS)
-    assert {"free, 30 kPa: no contact", "held, 30 kPa: 24 mm² in contact"} <= set(labels(figure))
+    assert {"free, 30 kPa: no contact", "held, 30 kPa: 200 mm² in contact"} <= set(labels(figure))
     low, high = curve.get_ylim()
     assert low < 0.0 < high
 
 
 def test_walls_that_never_come_near_are_said_to():
-    shapes = Shapes.of(states_of(sample_block(half=False)))
-    figure = contact_figure("d", {"free": steps_of(contact=False)}, {"free": shapes}, None)
+    states = {"free": states_of(sample_block(half=False))}
+    figure = contact_figure("d", {"free": steps_of(contact=False)}, states, None)
     assert {"no two walls come near", "free, 30 kPa: no contact"} <= set(labels(figure))
 
 
