@@ -3,7 +3,7 @@
 Two variants, both from pressure zero on. ``edge``: the lower edge of the tip, the nodes farthest
 along the actuator and lowest of these, keeps its height on a frictionless support; the force is
 the support's reaction. ``plate``: a rigid frictionless plate lies under the base, at a distance;
-the force is the resultant of the contact with it.
+the force is what the clamp has to hold against it, less the weight.
 """
 
 from __future__ import annotations
@@ -94,15 +94,20 @@ def _on_edge(body: Body) -> tuple[Assembly, Force]:
 
 def _on_plate(body: Body, actuation: Actuation) -> tuple[Assembly, Force]:
     mesh, law = body.mesh, ContactLaw()
-    faces = _lower_faces(mesh)
     # Contact begins at the law's width: without it the plate would press from the start.
     below = actuation.plate_distance_mm + law.width
     point = np.array([0.0, 0.0, mesh.points[:, _VERTICAL].min() - below])
-    plate = PlaneContact(mesh.points, faces, point, np.array([0.0, 0.0, 1.0]), law)
+    plate = PlaneContact(mesh.points, _lower_faces(mesh), point, np.array([0.0, 0.0, 1.0]), law)
     assembly = Assembly((*body.terms, plate), body.size, body.fixed)
+    fixed = np.flatnonzero(body.fixed[: 3 * body.nodes])
+    clamp = fixed[fixed % 3 == _VERTICAL]
+    weight = float(body.gravity.weight[_VERTICAL]) if body.gravity else 0.0
 
     def force(state: State) -> float:
-        return body.copies * float(plate.force(state.unknowns)[_VERTICAL])
+        # By balance with the clamp, since pressure has no resultant: the penalty is so stiff that
+        # its own force would show the last thousandth of a millimetre.
+        reaction = float(assembly.linearize(state)[1][clamp].sum())
+        return -body.copies * (reaction + weight)
 
     return assembly, force
 
