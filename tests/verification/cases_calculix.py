@@ -1,0 +1,222 @@
+"""The same meshes, materials and pressures given to CalculiX, by decks of :mod:`pagd.deck`."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, replace
+
+import calculix
+import numpy as np
+from actuators import default_elastomer, default_paper, mesh_of, trajectory
+from displacement_element import DisplacementSolid
+from figure import Figure
+from refinement import halved
+from scipy.optimize import fsolve
+from solving import FloatArray, held, solve
+
+from pagd.actuation import Actuation, free_actuation
+from pagd.deck import HELD
+from pagd.errors import Status
+from pagd.fem.bending import bending_terms
+from pagd.fem.follower_pressure import FollowerPressure
+from pagd.fem.hyperelastic import deviatoric_response
+from pagd.fem.membrane import Membrane
+from pagd.fem.term import EnergyTerm
+from pagd.materials import Elastomer, elastomer
+from pagd.mesh.primitives import box
+from pagd.mesh.types import Mesh
+
+#: Order of the error at edges that point inwards at a right angle, where the displacement goes
+#: with the distance to the power 0.5445 (Williams 1952): twice that, for a displacement.
+ORDER = 1.089
+
+_LAWS = {
+    "neo-Hooke": {"law": "neo_hookean", "coefficients": {"C10": 0.11}},
+    "Mooney-Rivlin": {"law": "mooney_rivlin", "coefficients": {"C10": 0.08, "C01": 0.03}},
+    "Yeoh": {"law": "yeoh", "coefficients": {"C10": 0.11, "C20": 0.02, "C30": 1e-3}},
+    "Ogden": {"law": "ogden", "coefficients": {"mu": [0.15, 0.05], "alpha": [1.5, 4.0]}},
+}
+
+
+def laws_in_a_deck() -> list[Figure]:
+    """A block pulled to 1.2 times its length by a pressure on its end, by each law of a deck.
+
+    One state everywhere: ours is that of the law itself, as the elements evaluate it, with the
+    volumetric stress K (J − 1); ν = 0.49. What may differ is the iteration, which CalculiX ends at
+    some 1e-5 of the displacement.
+    """
+    block = box((4.0, 3.0, 2.0), (1, 1, 1))
+    mesh = replace(block, surfaces=block.surfaces | {"cavity": block.surfaces["x1"]})
+    materials = {
+        name: elastomer(name, law | {"poisson_ratio": 0.49}) for name, law in _LAWS.items()
+    }
+    return [_stretch(mesh, material) for material in materials.values()]
+
+
+def _stretch(mesh: Mesh, material: Elastomer) -> Figure:
+    pull = 0.15  # MPa, true stress
+    (moved,) = calculix.displacements(
+        mesh,
+        material,
+        None,
+        [-1e3 * pull],
+        held={"x0": "x", "y0": "y", "z0": "z"},
+        **calculix.TIGHT,
+    )
+    along, _ = fsolve(_stresses, (1.2, 0.9), args=(material, pull), xtol=1e-12)
+    return Figure(
+        name=f"block pulled by 150 kPa, {material.name}: stretch, less one",
+        source=calculix.version(),
+        reference=float(moved[:, 0].max() / mesh.points[:, 0].max()),
+        value=float(along - 1),
+        tolerance=1e-4,
+    )
+
+
+def _stresses(stretches: FloatArray, material: Elastomer, pull: float) -> FloatArray:
+    """True stress along the pull, less the pull, and across, in MPa."""
+    along, across = stretches
+    volume = along * across**2
+    squares = np.diag([along, across, across]) ** 2 * volume ** (-2 / 3)
+    stress, tangent = np.zeros(6), np.zeros((6, 6))
+    deviatoric_response(material.kind, material.parameters, squares, stress, tangent)
+    return stress[:2] / volume + material.bulk_modulus * (volume - 1) - [pull, 0]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What is compared of a deformed actuator: in mm and degrees."""
+
+    tip: float
+    bending: float
+    twist: float
+
+
+def shape(name: str, mesh: Mesh, pressure: float, moved: FloatArray) -> Shape:
+    """Mean z of the tip, and how far it has turned."""
+    path = trajectory(name, mesh, np.array([0.0, pressure]), np.array([0 * moved, moved]))
+    tip = float(moved[mesh.nodes_of("tip"), 2].mean())
+    return Shape(tip, float(path.bending_deg[-1, -1]), float(path.twist_deg[-1, -1]))
+
+
+def same_element() -> list[Figure]:
+    """Table 2's examples on one mesh of 5 mm at 5 kPa, ours without a pressure unknown too.
+
+    So both programs have C3D10, and ν = 0.499: it locks in both alike. Without paper only the
+    integration of the pressure and the iterations differ. A membrane is a wedge in CalculiX,
+    0.1 mm thick, hinged, and overlaps the tetrahedra; ours has no thickness. The shell is such a
+    wedge too: one element of it bends as a quadratic one does, ours as in a plate whose kinks a
+    penalty closes, which on a mesh this coarse is the largest difference.
+    """
+    return [
+        *_same("bending", "no paper", None, 5e-4),
+        *_same("bending", "membrane", "M3D6", 5e-3),
+        *_same("bending", "shell", "S6", 0.02),
+        *_same("twisting", "shell", "S6", 0.02),
+    ]
+
+
+def _same(name: str, paper: str, sheet: str | None, tolerance: float) -> list[Figure]:
+    mesh, pressure = mesh_of(name, 5.0, half=name == "bending"), 5.0
+    (moved,) = calculix.displacements(
+        mesh,
+        default_elastomer(),
+        default_paper() if sheet else None,
+        [pressure],
+        first_increment=0.5,
+        sheet_element=sheet or "S6",
+        **calculix.TIGHT,
+    )
+    other = shape(name, mesh, pressure, moved)
+    ours = shape(name, mesh, pressure, _displaced(mesh, pressure, sheet))
+    return _rows(f"{name}, 5 mm, 5 kPa, {paper}", "C3D10, same mesh", other, ours, tolerance)
+
+
+def _displaced(mesh: Mesh, pressure: float, sheet: str | None) -> FloatArray:
+    """Displacement (n, 3) by the element of CalculiX and our paper."""
+    terms: list[EnergyTerm] = [
+        DisplacementSolid(mesh.points, mesh.tets, default_elastomer()),
+        FollowerPressure(mesh.points, mesh.surfaces["cavity"]),
+    ]
+    faces = mesh.surfaces["paper"]
+    terms += [Membrane(mesh.points, faces, default_paper())] if sheet else []
+    terms += _bending(mesh) if sheet == "S6" else []
+    fixed = held(mesh, **{name: HELD[name] for name in HELD if name in mesh.surfaces})
+    (state,) = solve(mesh.points, terms, fixed, [1e-3 * pressure], tolerance=1e-6)
+    return state.displacement
+
+
+def _bending(mesh: Mesh) -> list[EnergyTerm]:
+    symmetry = mesh.nodes_of("symmetry") if "symmetry" in mesh.surfaces else None
+    faces, clamped = mesh.surfaces["paper"], mesh.nodes_of("fixed")
+    return list(
+        bending_terms(mesh.points, faces, default_paper(), clamped=clamped, symmetry=symmetry)
+    )
+
+
+def bending_on_finer_meshes() -> list[Figure]:
+    """The bending design (half model) at 2 kPa: C3D10 of CalculiX comes to the same as our P2–P1.
+
+    ν = 0.499, so that C3D10 locks and comes there slowly. A mesh of 8 mm and the same with every
+    edge halved; the paper is a shell. On each mesh the difference is mostly the locking; what both
+    go to is extrapolated with the order of the singularities at the corners of the cavities.
+    """
+    return _finer("bending")
+
+
+def twisting_on_finer_meshes() -> list[Figure]:
+    """The twisting design at 2 kPa, on meshes as those of the bending one."""
+    return _finer("twisting")
+
+
+#: Differences that locking may make on the two meshes, and what may be left in the limit.
+TOLERANCES = {"8 mm": 0.25, "8 mm halved": 0.1, "limit": 0.03}
+
+
+def _finer(name: str) -> list[Figure]:
+    coarse = mesh_of(name, 8.0, half=name == "bending")
+    pairs = {"8 mm": _pair(name, coarse), "8 mm halved": _pair(name, halved(coarse))}
+    pairs["limit"] = tuple(map(_limit, *pairs.values()))
+    return [
+        figure
+        for mesh, (other, ours) in pairs.items()
+        for figure in _rows(
+            f"{name}, {mesh}, 2 kPa, shell, P2-P1", "C3D10", other, ours, TOLERANCES[mesh]
+        )
+    ]
+
+
+def _limit(coarse: Shape, fine: Shape) -> Shape:
+    """Richardson's extrapolation from a mesh and its halves."""
+    pairs = zip(astuple(coarse), astuple(fine), strict=True)
+    return Shape(*(b + (b - a) / (2**ORDER - 1) for a, b in pairs))
+
+
+def _pair(name: str, mesh: Mesh) -> tuple[Shape, Shape]:
+    """What CalculiX and we get for an actuator at 2 kPa."""
+    materials, pressure = (default_elastomer(), default_paper()), 2.0
+    (moved,) = calculix.displacements(mesh, *materials, [pressure], first_increment=1.0)
+    wanted = Actuation(
+        maximum_pressure_kPa=pressure, contact=False, blocked_force="none", tolerance_mm=1e-3
+    )
+    result = free_actuation(mesh, *materials, wanted)
+    assert result.status is Status.ok, result.reason
+    ours = result.states[-1].displacement
+    return shape(name, mesh, pressure, moved), shape(name, mesh, pressure, ours)
+
+
+def _rows(what: str, element: str, other: Shape, ours: Shape, tolerance: float) -> list[Figure]:
+    """Tip, bending, and twist where there is some."""
+    twists = abs(other.twist) > 0.1 * abs(other.bending)
+    found = [("tip z", "mm", other.tip, ours.tip), ("bending", "°", other.bending, ours.bending)]
+    found += [("twist", "°", other.twist, ours.twist)] if twists else []
+    return [
+        Figure(
+            name=f"{what}: {result}",
+            source=f"{calculix.version()}, {element}",
+            reference=reference,
+            value=value,
+            tolerance=tolerance,
+            unit=unit,
+        )
+        for result, unit, reference, value in found
+    ]
