@@ -380,6 +380,11 @@ def test_a_design_is_told_by_what_its_records_say(tmp_path):
         "In free actuation walls first touch at 28.6 kPa and penetrate by at most 0.010 mm, 5.0 %"
         " of the gap between them. Blocked force (lower edge of the tip held): 0.690 N at 30 kPa."
     )
+    write_record(solve_record("d", support="none", deepest_penetration_mm=0.0), touched / "solve")
+    assert told(touched) == (
+        "In free actuation walls first touch at 28.6 kPa and do not penetrate. No blocked force was"
+        " asked for."
+    )
     assert told(solved(tmp_path / "clear", support="none")) == (
         "No walls touched in free actuation. No blocked force was asked for."
     )
@@ -405,8 +410,10 @@ def test_the_page_says_of_contact_what_the_records_say(tmp_path):
     on = [solved(tmp_path / name) for name in ("a", "b")]
     off = [solved(tmp_path / name, contact=False) for name in ("c", "d")]
     together = contact_note(read_entries([*on, off[0]]))
-    assert "at most 5.0 % of the gap" in together
+    assert "by 5.0 % of the gap where it is deepest" in together
     assert together.endswith("Contact was off for 1 design: walls that balloon may overlap there.")
     assert "off" not in contact_note(read_entries(on))
+    write_record(solve_record("e", penetration_share=0.0), solved(tmp_path / "e") / "solve")
+    assert "by less than 0.1 % of the gap" in contact_note(read_entries([tmp_path / "e"]))
     assert contact_note(read_entries(off)).startswith("Contact was off for all designs")
     assert contact_note([]) == ""

@@ -55,7 +55,9 @@ def _contact(first_kPa: float | None, figures: Mapping[str, Any]) -> str:
         return "No walls touched in free actuation."
     depth, share = figures.get("deepest_penetration_mm"), figures.get("penetration_share")
     told = f"In free actuation walls first touch at {kilopascals(first_kPa)}"
-    if depth is not None:
+    if depth is not None and depth <= 0.0:
+        told += " and do not penetrate"
+    elif depth is not None:
         told += f" and penetrate by at most {number(depth, 3)} mm"
         told += "" if share is None else f", {_percent(share)} of the gap between them"
     return f"{told}."
@@ -84,8 +86,10 @@ def _blocked(settings: Mapping[str, Any], ending: Mapping[str, Any] | None) -> s
 
 def _largest_share(figures: Iterable[Mapping[str, Any]]) -> str:
     shares = [f["penetration_share"] for f in figures if f.get("penetration_share") is not None]
-    return f", at most {_percent(max(shares))} of the gap" if shares else ""
+    return f", by {_percent(max(shares))} of the gap where it is deepest" if shares else ""
 
 
 def _percent(share: float) -> str:
-    return f"{number(100.0 * share, 1)} %"
+    least = 0.001
+    told = f"{number(100.0 * max(share, least), 1)} %"
+    return told if share >= least else f"less than {told}"

@@ -168,8 +168,13 @@ def _content(entries: Sequence[Entry], rows: Sequence[Row]) -> dict[str, Any]:
         "modes": {mode: look.colour for mode, look in MODE_LOOKS.items()},
         "groups": list(groups) if len(entries) > FEW else [],
         "designs": _designs(entries, groups),
-        "points": [{key: row.get(key) for key in _OF_POINT} for row in rows],
+        "points": [{key: _shown(row.get(key)) for key in _OF_POINT} for row in rows],
     }
+
+
+def _shown(value: Any) -> Any:
+    """Return a value without what is round-off: a twist of 1e-14° would have an axis of its own."""
+    return round(value, 6) + 0.0 if isinstance(value, float) else value
 
 
 def _designs(
