@@ -104,7 +104,7 @@ def test_pictures_and_page(generative: Project) -> None:
     drawn = {path.stem for path in (generative / "figures/generative").glob("*.png")}
     assert drawn == {"embedding", "mixture", "hull", "comparison", "distributions"}
     simulated = {path.stem for path in (generative / "figures/simulated").glob("*.png")}
-    assert simulated == {"bending_twist", "feasibility", "novelty_performance"}
+    assert simulated == {"bending_twist", "feasibility", "force_bending", "novelty_performance"}
     page = (generative / "report/index.html").read_text()
     for name in (*selected(generative), "Data set and embedding", "Novelty and diversity"):
         assert name in page

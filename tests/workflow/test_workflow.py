@@ -156,11 +156,19 @@ def test_a_straight_design_is_solved_as_a_half(finished: Project) -> None:
 
 def test_pictures_and_page(finished: Project) -> None:
     for name in ("straight", "slanted"):
-        for picture in ("geometry", "mesh", "deformed"):
-            content = (finished / f"designs/{name}/figures/{picture}.png").read_bytes()
-            assert content.startswith(b"\x89PNG")
+        figures = {path.stem: path for path in (finished / f"designs/{name}/figures").glob("*.png")}
+        assert set(figures) == {
+            "geometry",
+            "mesh",
+            "deformed",
+            "pressure_volume",
+            "contact",
+            "blocked_force",
+        }
+        assert all(path.read_bytes().startswith(b"\x89PNG") for path in figures.values())
     assert {path.name for path in (finished / "figures/together").glob("*.png")} == {
         "angles.png",
+        "forces.png",
         "gallery.png",
         "trajectories.png",
     }
