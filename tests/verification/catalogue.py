@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from cases_actuators import balance_of_energy, element_table, other_library, resultants, symmetries
 from cases_blocked import balance_of_forces, plate_and_edge, small_pressure
+from cases_calculix import (
+    bending_on_finer_meshes,
+    laws_in_a_deck,
+    same_element,
+    twisting_on_finer_meshes,
+)
 from cases_composite import bent_strip, twisted_strip
 from cases_contact import narrow_row, two_blocks
 from cases_inflation import moved_walls, walls_under_pressure
 from cases_material import balloon, homogeneous_states
+from cases_meshes import bending_meshes, mixed_meshes, twisting_meshes
 from cases_paper import circle, elastica
 from cases_solid import block_bending, convergence, cook_membrane, patch_test, rigid_rotation
 from cases_supports import block_on_plane, own_weight
@@ -41,6 +48,13 @@ CASES: tuple[Case, ...] = (
     Case(rows=symmetries, group=Group.symmetry),
     Case(rows=other_library, group=Group.programs),
     Case(rows=element_table, group=Group.programs, costly=True),
+    Case(rows=laws_in_a_deck, group=Group.programs, program="ccx"),
+    Case(rows=same_element, group=Group.programs, program="ccx", costly=True),
+    Case(rows=bending_on_finer_meshes, group=Group.programs, program="ccx", costly=True),
+    Case(rows=twisting_on_finer_meshes, group=Group.programs, program="ccx", costly=True),
+    Case(rows=bending_meshes, group=Group.meshes, costly=True),
+    Case(rows=twisting_meshes, group=Group.meshes, costly=True),
+    Case(rows=mixed_meshes, group=Group.meshes, costly=True),
 )
 
 

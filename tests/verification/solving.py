@@ -147,7 +147,8 @@ def equilibrium(
     """
     displacements = guess.size - sum(getattr(term, "pressures", 0) for term in terms)
     assembly, solver = Assembly(terms, guess.size, fixed), linear_solver()
-    settings = NewtonSettings(tolerance=tolerance, iterations=15, largest_correction=1e3)
+    # The forces of the paper settle first, with corrections that may grow meanwhile.
+    settings = NewtonSettings(tolerance=tolerance, iterations=25, growth=5.0)
     newton = Newton(assembly, solver, displacements, settings)
     result = newton.solve(State(load, guess, tuple(_internal(t, guess, load) for t in terms)))
     solver.free()
