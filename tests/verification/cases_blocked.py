@@ -78,7 +78,7 @@ def small_pressure() -> list[Figure]:
 
 
 def balance_of_forces() -> list[Figure]:
-    """The beam at 15 kPa: the clamp holds what the edge gives, since pressure has no resultant."""
+    """The beam at 20 kPa: the clamp holds what the edge gives, since pressure has no resultant."""
     _, blocked = analysed(LARGE)
     force, edge = float(blocked.figures["blocked_force_N"]), tip_edge(beam())
     state = _supported(LARGE)

@@ -45,7 +45,7 @@ class Figure:
     @property
     def passes(self) -> bool:
         """Whether the error is within the tolerance; a value that is no number is not."""
-        return abs(self.error) <= self.tolerance
+        return bool(abs(self.error) <= self.tolerance)
 
     def __str__(self) -> str:
         error, allowed = (percent(value) for value in (self.error, self.tolerance))

@@ -121,15 +121,16 @@ def page(outcomes: Sequence[Outcome], circumstances: dict[str, Any]) -> str:
 
 
 def _made(circumstances: dict[str, Any]) -> str:
-    """When, where and by which versions the page was made: the one line that always changes."""
+    """When, where and by which versions the page was made: the one sentence that always changes."""
     found, machine = circumstances["versions"], circumstances["machine"]
     libraries = ", ".join(f"{name} {found[name]}" for name in LIBRARIES if found[name])
-    return (
+    text = (
         f"Made on {circumstances['date'][:10]} at commit {circumstances['commit']} in "
         f"{circumstances['seconds'] / 60:.0f} minutes by {circumstances['processes']} processes on "
         f"{machine['processor']} ({machine['cores']} cores); python {found['python']}, "
-        f"{libraries}.\n"
+        f"{libraries}."
     )
+    return textwrap.fill(text, 100) + "\n"
 
 
 def _summary(cases: Sequence[Case], groups: Sequence[Group], known: dict[str, Outcome]) -> str:
@@ -173,10 +174,12 @@ def _table(figures: Sequence[Figure]) -> str:
 
 def cells(figure: Figure) -> list[str]:
     """A row of the table."""
+    noise = figure.reference == 0 and abs(figure.value) < 1e-4
     return [
         figure.name.replace("|", "\\|"),
         f"{figure.reference:.6g}",
-        f"{figure.value:.6g}" if abs(figure.value) > 1e-4 else f"{figure.value:.1g}",
+        # What should be zero is round-off, of which more digits say nothing.
+        f"{figure.value:.1g}" if noise else f"{figure.value:.6g}",
         figure.unit,
         percent(figure.error),
         percent(figure.tolerance),
