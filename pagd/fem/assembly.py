@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pagd.fem.compiled import compiled
 from pagd.fem.pattern import Pattern, build_pattern
-from pagd.fem.term import ElementSystem, EnergyTerm, SearchingTerm
+from pagd.fem.term import ElementSystem, EnergyTerm, SearchingTerm, TouchingTerm
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -60,6 +60,7 @@ class Assembly:
         self._numbering = np.full(size, -1, np.int64)
         self._numbering[self.free] = np.arange(len(self.free))
         self._searching = [t for t in self.terms if isinstance(t, SearchingTerm)]
+        self._touching = [t for t in self.terms if isinstance(t, TouchingTerm)]
         self._make_room()
 
     def _make_room(self) -> None:
@@ -102,6 +103,11 @@ class Assembly:
             _add_vector(term.dofs, system.residual, residual)
             _add_matrix(positions, system.tangent, self._values)
         return energy, residual, self._values[:-1]
+
+    @property
+    def excess(self) -> float:
+        """How much deeper (mm) than can be trusted any touching is at the state linearised last."""
+        return max((term.excess for term in self._touching), default=0.0)
 
     def advance(self, state: State, correction: FloatArray) -> State:
         """The state after ``correction`` (size,) of the unknowns, at the same load.

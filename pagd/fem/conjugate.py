@@ -48,7 +48,7 @@ class ConjugatePath:
         newton: Newton,
         control: StepControl,
         smallest_share: float = 1e-3,
-        most_steps: int = 1000,
+        most_steps: int = 300,
     ) -> None:
         if newton.load_term is None:
             raise ValueError("to step by the conjugate of the load, its term is needed")
@@ -99,7 +99,7 @@ class ConjugatePath:
     def _try(self, points: Sequence[_Point], conjugate: float) -> NewtonResult:
         places = [point.conjugate for point in points]
         guess = interpolate([point.state for point in points], places, conjugate)
-        return self._newton.solve(guess, conjugate)
+        return self._newton.solve(guess, conjugate, points[-1].state)
 
     def _landings(self, before: _Point, after: _Point, wanted: list[float]) -> Iterator[Step]:
         """States at the wanted loads between two points; those reached leave the list."""

@@ -2,8 +2,8 @@
 
 The potential is ∫ ψ(g) dA over the undeformed slave faces, g the gap to the nearest master face
 and ψ a penalty whose pressure begins without a kink (:func:`contact_kernels.pressure_law`): with
-stiffness ε the pressure p presses the faces p/ε into each other. Residual and tangent are exact
-derivatives of it; the tangent is symmetric.
+stiffness ε the pressure p presses the faces p/ε into each other. The residual is its derivative;
+the tangent, symmetric, is that of the residual but for a limit, see :class:`ContactLaw`.
 
 Which faces are near changes along the path. The pairs of faces that the tangent couples are kept
 in a set that only grows, and :meth:`FaceContact.update` tells when it has.
@@ -35,17 +35,22 @@ class ContactLaw:
     stiffness
         Pressure by penetration ε, in MPa/mm.
     width
-        Pressure begins at this gap, in mm, and is linear in the penetration beyond it.
+        Pressure begins at this gap, in mm, and is linear in the penetration beyond it. A trial
+        state with a larger penetration is not trusted.
     reach
         Faces with a point nearer than this, in mm, are coupled.
     deepest
         A face farther behind another than this, in mm, is no penetration but the far side of it.
+    steady
+        The turning of the normal enters the tangent up to the pressure of so much penetration, in
+        mm: with all the pressure of a first guess that is too deep the tangent is indefinite.
     """
 
-    stiffness: float = 20.0
-    width: float = 0.04
+    stiffness: float = 10.0
+    width: float = 0.06
     reach: float = 0.5
     deepest: float = 0.75
+    steady: float = 5e-3
 
 
 class FaceContact:
@@ -83,7 +88,7 @@ class FaceContact:
         """Look for near faces at a state; whether ``dofs`` has grown by new pairs."""
         positions = self._positions(unknowns)
         self._search(positions)
-        self._project(positions)
+        self._project(positions, keeps=-np.inf)
         keys = np.union1d(self._keys, self._near_keys())
         grown = len(keys) > len(self._keys)
         if grown:
@@ -102,7 +107,7 @@ class FaceContact:
     ) -> float:
         """Fill the element system; see :class:`pagd.fem.term.EnergyTerm`."""
         positions = self._positions(unknowns)
-        self._project(positions)
+        self._project(positions, keeps=self.law.reach)
         system.residual[:] = 0.0
         system.tangent[:] = 0.0
         found = self._found
@@ -119,6 +124,7 @@ class FaceContact:
             found.parameters,
             self.law.stiffness,
             self.law.width,
+            self.law.steady,
             system.residual,
             system.tangent,
             found.energies,
@@ -137,6 +143,11 @@ class FaceContact:
     def smallest_gap(self) -> float:
         """Smallest gap (mm) at the state seen last; infinite where nothing is near."""
         return float(self._found.gaps.min(initial=np.inf))
+
+    @property
+    def excess(self) -> float:
+        """How much deeper (mm) than the law's width faces are pressed at the state seen last."""
+        return max(-self.law.width - self.smallest_gap, 0.0)
 
     @property
     def is_complete(self) -> bool:
@@ -159,7 +170,7 @@ class FaceContact:
         self._starts = np.concatenate([[0], np.cumsum(counts)])
         self._candidates = np.concatenate([*near, []]).astype(np.int64)
 
-    def _project(self, positions: FloatArray) -> None:
+    def _project(self, positions: FloatArray, keeps: float) -> None:
         found = self._found
         kernels.find_gaps(
             positions,
@@ -169,6 +180,7 @@ class FaceContact:
             self._starts,
             self._candidates,
             self.law.deepest,
+            keeps,
             found.gaps,
             found.entries,
             found.parameters,

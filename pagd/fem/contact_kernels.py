@@ -29,8 +29,11 @@ IntArray = NDArray[np.int64]
 # The closest point on a flat face is found at once, on a curved one in a few iterations.
 _ITERATIONS = 12
 _PARAMETER_TOLERANCE = 1e-10
-# A point counts as above a face up to so far beyond its edges, so that none falls in between.
+# A point counts as above a face up to so far beyond its edges, so that none falls in between, …
 _BEYOND = 1e-6
+# … and stays above the face it was found above up to so far beyond them: where two faces meet at
+# an angle, Newton's method would go to and fro between them.
+_STAYS_BEYOND = 0.2
 # The flat corner triangle is a first guess for the curved face: how far outside it may lie.
 _FLAT_BEYOND = 0.35
 
@@ -120,10 +123,11 @@ def project(
     face: IntArray,
     parameters: FloatArray,
     work: FloatArray,
+    beyond: float = _BEYOND,
 ) -> float:
     """Signed gap of a point above a face, and its parameters (2,); infinite where not above it.
 
-    ``work`` (10, 6) is scratch.
+    The point may lie so far ``beyond`` the edges, in parameters. ``work`` (10, 6) is scratch.
     """
     r, s = _flat_guess(point, positions, face)
     if r < -_FLAT_BEYOND or s < -_FLAT_BEYOND or r + s > 1 + _FLAT_BEYOND:
@@ -150,7 +154,7 @@ def project(
         if abs(dr) + abs(ds) < _PARAMETER_TOLERANCE:
             converged = True
             break
-    if not converged or r < -_BEYOND or s < -_BEYOND or r + s > 1 + _BEYOND:
+    if not converged or r < -beyond or s < -beyond or r + s > 1 + beyond:
         return math.inf
     _shapes(r, s, values, slopes)
     _place(point, positions, face, values, slopes, difference, tangents)
@@ -179,6 +183,7 @@ def find_gaps(
     starts: IntArray,
     candidates: IntArray,
     deepest: float,
+    keeps: float,
     gaps: FloatArray,
     entries: IntArray,
     parameters: FloatArray,
@@ -186,12 +191,20 @@ def find_gaps(
     """Nearest face of each slave point among its candidates.
 
     Fills gaps (S, Q), infinite where no candidate lies below the point; entries (S, Q), places in
-    ``candidates``; parameters (S, Q, 2). A gap below −``deepest`` is the far side of a wall.
+    ``candidates``; parameters (S, Q, 2). A gap below −``deepest`` is the far side of a wall. A
+    point whose gap was smaller than ``keeps`` keeps its face while it is above it or little beyond.
     """
     for e in prange(slaves.shape[0]):
         point, found, work = np.empty(3), np.empty(2), np.empty((10, 6))
         for q in range(values.shape[0]):
             slave_point(positions, slaves[e], values[q], point)
+            if entries[e, q] >= 0 and gaps[e, q] < keeps:
+                kept = masters[candidates[entries[e, q]]]
+                gap = project(point, positions, kept, found, work, _STAYS_BEYOND)
+                if -deepest < gap < math.inf:
+                    gaps[e, q] = gap
+                    parameters[e, q, 0], parameters[e, q, 1] = found[0], found[1]
+                    continue
             gaps[e, q], entries[e, q] = math.inf, -1
             for c in range(starts[e], starts[e + 1]):
                 gap = project(point, positions, masters[candidates[c]], found, work)
@@ -272,6 +285,7 @@ def _add(
     slope: float,
     curvature: float,
     gap: float,
+    steady: float,
     normal: FloatArray,
     weights: FloatArray,
     along: FloatArray,
@@ -280,7 +294,11 @@ def _add(
     residual: FloatArray,
     tangent: FloatArray,
 ) -> None:
-    """Add slope ∇g to the residual (36,), and its derivative to the packed tangent (666,)."""
+    """Add slope ∇g to the residual (36,), and its derivative to the packed tangent (666,).
+
+    The part of ∇²g takes no more of the slope than ``steady`` (mm) of the curvature.
+    """
+    shown = max(slope, -steady * curvature)
     bent, inverse = coefficients[0], coefficients[1]
     left, right, entry = np.empty(2), np.empty(2), 0
     for i in range(36):
@@ -296,7 +314,7 @@ def _add(
             second = -left[0] * along[0, j] - left[1] * along[1, j]
             second -= right[0] * turning[0, j] + right[1] * turning[1, j]
             gj = weights[j // 3] * normal[j % 3]
-            tangent[entry] += curvature * gi * gj + slope * second
+            tangent[entry] += curvature * gi * gj + shown * second
             entry += 1
 
 
@@ -314,6 +332,7 @@ def linearize_contact(
     parameters: FloatArray,
     stiffness: float,
     width: float,
+    steady: float,
     residual: FloatArray,
     tangent: FloatArray,
     energies: FloatArray,
@@ -351,6 +370,7 @@ def linearize_contact(
                 areas[e, q] * slope,
                 areas[e, q] * curvature,
                 gaps[e, q],
+                steady,
                 normal,
                 weights,
                 along,

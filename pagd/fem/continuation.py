@@ -154,7 +154,9 @@ class Continuation:
             while states[-1].load < target:
                 load = _next_load(states[-1].load, target, step)
                 taken, known = load - states[-1].load, len(states)
-                result = self._newton.solve(self._guess(states, load))
+                # A guess half-way back would not have the values that are prescribed at its load.
+                before = None if self._boundary else states[-1]
+                result = self._newton.solve(self._guess(states, load), before=before)
                 correction = result.corrections[0] if result.corrections else math.inf
                 path = replace(path, iterations=path.iterations + result.iterations)
                 if result.state is None:

@@ -38,7 +38,10 @@ class NewtonSettings:
     largest_correction
         A correction of a node beyond this, in mm, ends the try.
     smallest_fraction
-        A correction is halved while it leads to an inadmissible state, down to this.
+        A correction is halved while it leads to an inadmissible state, down to this; so is one
+        that leads too deep into a contact, or twice as deep as it was; it is taken at the end.
+    shortenings
+        A first guess that is either is taken half-way back to the state before, so many times.
     growth
         A correction larger than the one before it, after the second, ends the try; with a number,
         one larger than so many times the larger of the first two.
@@ -48,6 +51,7 @@ class NewtonSettings:
     iterations: int = 8
     largest_correction: float = 50.0
     smallest_fraction: float = 1 / 16
+    shortenings: int = 5
     growth: float | None = None
 
 
@@ -97,16 +101,17 @@ class Newton:
         self._pattern = self.assembly.pattern
         self.solver.analyse(self._pattern.starts, self._pattern.columns)
 
-    def solve(self, guess: State, conjugate: float | None = None) -> NewtonResult:
+    def solve(
+        self, guess: State, conjugate: float | None = None, before: State | None = None
+    ) -> NewtonResult:
         """Iterate from ``guess``; failing to converge is a result, not an error.
 
-        At the load of the guess, or at the given value of its ``conjugate``.
+        At the load of the guess, or at the given value of its ``conjugate``. From the state
+        ``before`` the guess can be shortened.
         """
         settings = self.settings
         corrections: list[float] = []
-        state = guess
-        self.assembly.look_around(state)
-        energy, residual, values = self.assembly.linearize(state)
+        state, (energy, residual, values) = self._first(guess, before)
         if not np.isfinite(energy):
             return NewtonResult(None, 0, (), "the first guess inverts elements")
         while len(corrections) < settings.iterations:
@@ -130,6 +135,20 @@ class Newton:
         reason = "corrections in mm: " + ", ".join(f"{c:.1e}" for c in corrections)
         return NewtonResult(None, len(corrections), tuple(corrections), reason)
 
+    def _first(
+        self, guess: State, before: State | None
+    ) -> tuple[State, tuple[float, FloatArray, FloatArray]]:
+        """The guess, linearised, or what is left of it."""
+        state = guess
+        for _ in range(self.settings.shortenings):
+            self.assembly.look_around(state)
+            linearised = self.assembly.linearize(state)
+            if before is None or (np.isfinite(linearised[0]) and self.assembly.excess == 0):
+                return state, linearised
+            state = _half_way(before, state)
+        self.assembly.look_around(state)
+        return state, self.assembly.linearize(state)
+
     def _correction(
         self, state: State, residual: FloatArray, values: FloatArray, conjugate: float | None
     ) -> tuple[FloatArray, float]:
@@ -152,7 +171,8 @@ class Newton:
     def _admissible_step(
         self, state: State, correction: FloatArray, load: float
     ) -> tuple[State, FloatArray, FloatArray] | None:
-        """The corrected state, linearised; a part of the correction where all of it inverts."""
+        """The corrected state, linearised; part of the correction where all of it goes too far."""
+        trusted = 2 * self.assembly.excess
         fraction = 1.0
         while fraction >= self.settings.smallest_fraction:
             if fraction < 1.0:
@@ -161,10 +181,17 @@ class Newton:
             trial = self.assembly.advance(state, fraction * correction)
             trial = _loaded(trial, fraction * load)
             energy, residual, values = self.assembly.linearize(trial)
-            if np.isfinite(energy):
+            last = fraction < 2 * self.settings.smallest_fraction
+            if np.isfinite(energy) and (last or self.assembly.excess <= trusted):
                 return trial, residual, values
             fraction /= 2
         return None
+
+
+def _half_way(before: State, guess: State) -> State:
+    """Half-way back from a guess, at its load."""
+    internal = tuple((a + b) / 2 for a, b in zip(before.internal, guess.internal, strict=True))
+    return State(guess.load, (before.unknowns + guess.unknowns) / 2, internal)
 
 
 def _loaded(state: State, more: float) -> State:

@@ -88,7 +88,7 @@ class PlaneContact:
     normal
         Direction (3,) that points to where the body may be; of any length but zero.
     law
-        Penalty; ``reach`` and ``deepest`` have no meaning for a plane.
+        Penalty; ``reach``, ``deepest`` and ``steady`` have no meaning for a plane.
 
     Raises
     ------
@@ -159,6 +159,11 @@ class PlaneContact:
     def smallest_gap(self) -> float:
         """Smallest gap (mm) at the state seen last; infinite before the first."""
         return float(self._gaps.min(initial=np.inf))
+
+    @property
+    def excess(self) -> float:
+        """How much deeper (mm) than the law's width faces are pressed at the state seen last."""
+        return max(-self.law.width - self.smallest_gap, 0.0)
 
 
 def _unit(normal: FloatArray) -> FloatArray:

@@ -95,6 +95,16 @@ class SearchingTerm(EnergyTerm, Protocol):
         ...
 
 
+@runtime_checkable
+class TouchingTerm(EnergyTerm, Protocol):
+    """A term that begins to act where something touches, far stiffer than the rest."""
+
+    @property
+    def excess(self) -> float:
+        """How much deeper (mm) than can be trusted the touching is at the state linearised last."""
+        ...
+
+
 def node_dofs(nodes: IntArray) -> IntArray:
     """Numbers (elements, 3·nodes) of the displacements of nodes (elements, nodes), x y z apiece."""
     return np.asarray((nodes[:, :, None] * 3 + np.arange(3)).reshape(len(nodes), -1))

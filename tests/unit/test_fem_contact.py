@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fem_checks import check_derivatives, moved, residual
+from fem_checks import check_derivatives, linearized, moved, residual
 from numpy.typing import NDArray
 
 from pagd.fem.contact import ContactLaw, FaceContact
@@ -47,10 +47,52 @@ def waves(points: FloatArray, size: float = 0.05, seed: int = 0) -> FloatArray:
 
 @pytest.mark.parametrize(("width", "step"), [(0.02, 1e-6), (0.3, 1e-5)])
 def test_derivatives_on_curved_faces(width: float, step: float) -> None:
-    contact, points = facing(-0.03, ContactLaw(stiffness=5.0, width=width, reach=1.0))
+    law = ContactLaw(stiffness=5.0, width=width, reach=1.0, steady=math.inf)
+    contact, points = facing(-0.03, law)
     unknowns = waves(points)
     assert contact.update(unknowns)
     check_derivatives(contact, unknowns, step=step)
+
+
+def test_deep_faces_pull_in_no_direction() -> None:
+    """With no part of the turning normal, the tangent has no negative eigenvalue; else it has."""
+    lowest = []
+    for steady in (0.0, math.inf):
+        contact, points = facing(-0.4, ContactLaw(reach=1.0, steady=steady))
+        unknowns = waves(points)
+        contact.update(unknowns)
+        lowest.append(np.linalg.eigvalsh(linearized(contact, unknowns, 0.0)[2])[0])
+    assert lowest[0] > -1e-10
+    assert lowest[1] < -0.1
+
+
+def test_too_deep_is_deeper_than_the_width() -> None:
+    for gap, excess in ((0.0, 0.0), (-0.05, 0.0), (-0.07, 0.01)):
+        contact, points = facing(gap, ContactLaw(width=0.06))
+        contact.update(np.zeros(points.size))
+        assert contact.excess == pytest.approx(excess)
+
+
+def test_a_point_keeps_its_face_a_little_beyond_the_edge() -> None:
+    """Over a ridge along x = 2 the near point stays with the first face until the next search."""
+    corners = np.array([[0, -2, 0], [2, 0, 0], [0, 2, 0], [4, 0, -2.0]])
+    first, second = (0, 1, 2), (1, 3, 2)
+    slave = np.array([[1.4, 0.1, 0.1], [1.4, 0.2, 0.1], [1.5, 0.1, 0.1]])
+    nodes, faces = [], []
+    for triangle in (corners[list(first)], corners[list(second)], slave):
+        middles = [(triangle[i] + triangle[(i + 1) % 3]) / 2 for i in range(3)]
+        faces.append(len(nodes) + np.arange(6))
+        nodes += [*triangle, *middles]
+    points = np.array(nodes)
+    contact = FaceContact(points, np.array(faces[2:]), np.array(faces[:2]), ContactLaw())
+    contact.update(np.zeros(points.size))
+    assert contact.smallest_gap == pytest.approx(0.1)
+    over = np.zeros(points.shape)
+    over[12:, 0] = 0.6
+    contact.energy(over.ravel(), 0.0)
+    assert contact.smallest_gap == pytest.approx(0.1)
+    contact.update(over.ravel())
+    assert contact.smallest_gap > 0.11
 
 
 def test_a_rigid_motion_changes_nothing() -> None:

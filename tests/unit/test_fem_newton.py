@@ -58,6 +58,31 @@ class Snapping(Spring):
         return math.inf if unknowns[0] < 0 else Spring.energy(self, unknowns, load)
 
 
+@dataclass
+class Stop(Spring):
+    """A spring that meets a stop at 1, a hundred times as stiff; beyond 1.1 it is too deep."""
+
+    seen: list[float] = field(default_factory=list)
+
+    def energy(self, unknowns: FloatArray, load: float) -> float:
+        u = float(unknowns[0])
+        return Spring.energy(self, unknowns, load) + 50 * max(u - 1, 0) ** 2
+
+    def linearize(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
+    ) -> float:
+        self.seen.append(float(unknowns[0]))
+        Spring.linearize(self, unknowns, internal, load, system)
+        deep = max(self.seen[-1] - 1, 0)
+        system.residual[0] += 100 * deep
+        system.tangent[0] += 100 * (deep > 0)
+        return self.energy(unknowns, load)
+
+    @property
+    def excess(self) -> float:
+        return max(self.seen[-1] - 1.1, 0.0) if self.seen else 0.0
+
+
 def newton(spring: Spring, **settings: float | int) -> Newton:
     assembly = Assembly([spring], 1, np.array([False]))
     return Newton(assembly, SuperLUSolver(), 1, NewtonSettings(**settings))  # type: ignore[arg-type]
@@ -107,6 +132,34 @@ def test_corrections_that_stay_inadmissible_end_the_try() -> None:
     result = newton(Spring(limit=0.01)).solve(at(10.0))
     assert result.state is None
     assert "inverts" in result.reason
+
+
+def test_a_correction_too_deep_into_a_contact_is_halved() -> None:
+    """From 0 under a load of 3 the first correction leads to 3: to 1.5, 0.75 it is taken."""
+    stop = Stop()
+    result = newton(stop).solve(at(3.0))
+    assert result.state is not None
+    assert result.state.unknowns[0] == pytest.approx(103 / 101)
+    # Each halving starts again from the state before.
+    assert stop.seen[:6] == pytest.approx([0, 3, 0, 1.5, 0, 0.75])
+
+
+def test_what_stays_too_deep_is_taken_at_last() -> None:
+    """A true solution beyond what is trusted: the penetration is 0.5 at a load of 51.5."""
+    result = newton(Stop(), largest_correction=100.0, iterations=12).solve(at(51.5))
+    assert result.state is not None
+    assert result.state.unknowns[0] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("spring", [Spring(limit=1.0), Stop()])
+def test_a_guess_that_goes_too_far_is_shortened(spring: Spring) -> None:
+    """From 0.9 on to 2.5, half-way back to 1.7 and 1.3 and 1.1, and so on; the load is kept."""
+    before, guess = at(0.9, 0.9), at(0.95, 2.5)
+    refused = newton(Spring(limit=1.0)).solve(guess)
+    assert refused.state is None
+    result = newton(spring).solve(guess, before=before)
+    assert result.state is not None
+    assert (result.state.load, result.state.unknowns[0]) == pytest.approx((0.95, 0.95))
 
 
 def test_an_inadmissible_guess_is_refused() -> None:
@@ -159,7 +212,7 @@ class FakeNewton:
     reached: float = 0.0
     assembly: Assembly = field(default_factory=lambda: Assembly([Spring()], 1, np.array([False])))
 
-    def solve(self, guess: State) -> NewtonResult:
+    def solve(self, guess: State, before: State | None = None) -> NewtonResult:
         self.tries.append((guess.load, float(guess.unknowns[0])))
         corrections = (self.first_correction, 0.0)
         if guess.load - self.reached > self.largest * (1 + 1e-12):
