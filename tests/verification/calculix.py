@@ -58,7 +58,7 @@ def displacements(
     pressures_kPa: Sequence[float],
     *,
     threads: int = 1,
-    time_limit_s: float = 600.0,
+    time_limit_s: float = 1500.0,
     **deck: Any,
 ) -> list[FloatArray]:
     """Displacements (n, 3) in mm of the nodes at each pressure; ``deck`` as for write_deck.

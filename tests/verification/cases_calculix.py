@@ -108,7 +108,7 @@ def same_element() -> list[Figure]:
     kinks between elements a penalty closes.
     """
     return [
-        *_same("bending", 5.0, None, 5e-4),
+        *_same("bending", 5.0, None, 1e-3),
         *_same("bending", 2.0, default_paper(), 0.01),
         *_same("twisting", 2.0, default_paper(), 0.01),
     ]
@@ -145,7 +145,7 @@ def _shell(mesh: Mesh, paper: Sheet) -> list[EnergyTerm]:
 
 
 #: Differences that locking may make on a mesh, on its halves, and what may be left in the limit.
-TOLERANCES = (0.25, 0.1, 0.03)
+TOLERANCES = (0.3, 0.15, 0.03)
 
 
 def bending_on_finer_meshes() -> list[Figure]:
@@ -161,8 +161,8 @@ def bending_on_finer_meshes() -> list[Figure]:
 def twisting_on_finer_meshes() -> list[Figure]:
     """The twisting design at 2 kPa, on a mesh of 5 mm and its halves, as the bending one.
 
-    ν = 0.45 here, in both programs: at 0.499 C3D10 bends by a third too little on the
-    coarser mesh, too far off to be extrapolated.
+    ν = 0.45 here, in both programs: at 0.499 C3D10 bends by a third too little on the coarser
+    mesh, too far off to be extrapolated.
     """
     return _finer("twisting", 5.0, replace(default_elastomer(), poisson_ratio=0.45))
 
