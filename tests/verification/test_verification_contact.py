@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 from catalogue import quick
-from figure import Case, Group, check
+from figure import Case, Group
+from written_page import check_case
 
 
 @pytest.mark.parametrize("case", quick(Group.contact), ids=lambda case: case.name)
 def test_contact(case: Case) -> None:
-    check(case.rows())
+    check_case(case)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from catalogue import quick
 from closed_forms import elastica_tip
-from figure import Case, Group, check
+from figure import Case, Group
 from scipy.special import ellipk, ellipkinc
+from written_page import check_case
 
 
 def test_elastica_by_elliptic_integrals() -> None:
@@ -28,4 +29,4 @@ def test_small_loads_bend_as_a_beam() -> None:
 
 @pytest.mark.parametrize("case", quick(Group.paper), ids=lambda case: case.name)
 def test_paper(case: Case) -> None:
-    check(case.rows())
+    check_case(case)

@@ -15,7 +15,8 @@ from closed_forms import (
     limit_point,
     sphere_pressure,
 )
-from figure import Case, Group, check
+from figure import Case, Group
+from written_page import check_case
 
 LISTED = [
     (sphere_pressure, NEO_HOOKE, (48.458, 77.330, 107.399, 100.343)),
@@ -61,4 +62,4 @@ def test_closed_form_gives_the_listed_moments() -> None:
 
 @pytest.mark.parametrize("case", quick(Group.solids, Group.rates), ids=lambda case: case.name)
 def test_solids(case: Case) -> None:
-    check(case.rows())
+    check_case(case)
