@@ -38,7 +38,8 @@ class ContactLaw:
         Pressure begins at this gap, in mm, and is linear in the penetration beyond it. A trial
         state with a larger penetration is not trusted.
     reach
-        Faces with a point nearer than this, in mm, are coupled.
+        Faces with a point nearer than this, in mm, must be coupled; where any are not, so are
+        those within twice of it, since each search that finds more costs an analysis.
     deepest
         A face farther behind another than this, in mm, is no penetration but the far side of it.
     steady
@@ -50,7 +51,7 @@ class ContactLaw:
     width: float = 0.06
     reach: float = 0.5
     deepest: float = 0.75
-    steady: float = 5e-3
+    steady: float = 0.03
 
 
 class FaceContact:
@@ -89,11 +90,10 @@ class FaceContact:
         positions = self._positions(unknowns)
         self._search(positions)
         self._project(positions, keeps=-np.inf)
-        keys = np.union1d(self._keys, self._near_keys())
-        grown = len(keys) > len(self._keys)
+        grown = not np.isin(self._near_keys(self.law.reach), self._keys).all()
         if grown:
-            self._keys = keys
-            slave, master = np.divmod(keys, len(self._masters))
+            self._keys = np.union1d(self._keys, self._near_keys(2 * self.law.reach))
+            slave, master = np.divmod(self._keys, len(self._masters))
             self.dofs = node_dofs(np.hstack([self._slaves[slave], self._masters[master]]))
         self._pairs = self._numbers(self._candidate_keys())
         return grown
@@ -190,9 +190,9 @@ class FaceContact:
         slaves = np.repeat(np.arange(len(self._slaves)), np.diff(self._starts))
         return np.asarray(slaves * len(self._masters) + self._candidates)
 
-    def _near_keys(self) -> IntArray:
-        """Keys of the pairs with a point nearer than the reach."""
-        near = (self._found.entries >= 0) & (self._found.gaps < self.law.reach)
+    def _near_keys(self, distance: float) -> IntArray:
+        """Keys of the pairs with a point nearer than a distance in mm."""
+        near = (self._found.entries >= 0) & (self._found.gaps < distance)
         return np.unique(self._candidate_keys()[self._found.entries[near]])
 
     def _numbers(self, keys: IntArray) -> IntArray:

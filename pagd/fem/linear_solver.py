@@ -74,8 +74,8 @@ class PardisoSolver:
         1: 2,  # nested dissection (METIS)
         7: 0,  # refine only where pivots were perturbed
         9: 8,  # perturb pivots below 1e-8: the default of symmetric indefinite matrices
-        10: 1,  # scaling and
-        12: 1,  # weighted matching: the block of the pressures has a tiny diagonal
+        10: 1,  # scaling: the block of the pressures has a tiny diagonal
+        12: 0,  # no weighted matching: it doubles the analysis, and no pivot needs it
         23: 1,  # two-level factorisation
         34: 1,  # zero-based indices
     }
@@ -131,7 +131,7 @@ class PardisoSolver:
         if not np.isfinite(values).all():
             raise SingularMatrixError("the matrix has entries that are not finite")
         if not self._analysed:
-            # Matching and scaling look at the values, so the analysis needs them.
+            # Scaling looks at the values, so the analysis needs them.
             self._phase(self._ANALYSE, values, right)
             self._analysed = True
         self._phase(self._FACTORISE, values, right)
