@@ -92,6 +92,16 @@ def _bound(words: str) -> Callable[[str, Any], str]:
     return lambda key, error: f"{_value(key, error)} must be {words} {error.validator_value}"
 
 
+def _length(key: str, error: Any) -> str:
+    least, most = (error.schema.get(rule) for rule in ("minItems", "maxItems"))
+    if error.validator == "minItems" and least == 1:
+        return f"{key} must not be empty"
+    words = {"minItems": "at least ", "maxItems": "at most "}[error.validator]
+    count = f"{'' if least == most else words}{error.validator_value}"
+    kind = "numbers" if error.schema.get("items") == {"type": "number"} else "entries"
+    return f"{_value(key, error)} must have {count} {kind}"
+
+
 def _enum(key: str, error: Any) -> str:
     return f"{_value(key, error)} must be one of {', '.join(map(str, error.validator_value))}"
 
@@ -136,7 +146,8 @@ _WORDS: dict[str, Callable[[str, Any], str]] = {
     "required": _missing,
     "pattern": _pattern,
     "minProperties": lambda key, error: f"{key} must not be empty",
-    "minItems": lambda key, error: f"{key} must not be empty",
+    "minItems": _length,
+    "maxItems": _length,
 }
 
 

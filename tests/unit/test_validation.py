@@ -2,7 +2,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from jsonschema import Draft202012Validator
 
+from pagd import validation
 from pagd.errors import InputError
 from pagd.validation import check, check_each, defaults, faults, schema
 
@@ -26,12 +28,41 @@ from pagd.validation import check, check_each, defaults, faults, schema
         ({"limits": {"gap_mm": -1}}, "limits.gap_mm = -1 must be at least 0"),
         ({"limits": {"theta_deg": 91}}, "limits.theta_deg = 91 must be at most 60"),
         ({"designs": {}}, "designs must not be empty"),
+        (
+            {"solve": {"gravity_m_s2": [0, -9.81]}},
+            "solve.gravity_m_s2 = [0, -9.81] must have 3 numbers",
+        ),
+        (
+            {"solve": {"gravity_m_s2": [0, 0, 0, 1]}},
+            "solve.gravity_m_s2 = [0, 0, 0, 1] must have 3 numbers",
+        ),
+        ({"solve": {"gravity_m_s2": []}}, "solve.gravity_m_s2 = [] must have 3 numbers"),
         ({"material": 7}, "material = 7 must be text"),
     ],
 )
 def test_a_fault_names_key_value_and_rule(document: dict[str, object], sentence: str) -> None:
     (found,) = faults(document, "config")
     assert found.startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    ("rules", "document", "sentence"),
+    [
+        ({"minItems": 2}, ["a"], "['a'] must have at least 2 entries"),
+        ({"maxItems": 2}, ["a", "b", "c"], "['a', 'b', 'c'] must have at most 2 entries"),
+        ({"minItems": 2, "maxItems": 2}, ["a"], "['a'] must have 2 entries"),
+        ({"minItems": 1, "maxItems": 2}, [1, 2, 3], "[1, 2, 3] must have at most 2 entries"),
+    ],
+)
+def test_the_length_of_any_list_is_told(
+    rules: dict[str, int],
+    document: list[object],
+    sentence: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rule = Draft202012Validator({"type": "array", **rules})
+    monkeypatch.setattr(validation, "_validator", lambda name: rule)
+    assert list(faults(document, "config")) == [sentence]
 
 
 def patterns(of: Any) -> Iterator[dict[str, Any]]:
