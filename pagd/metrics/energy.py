@@ -18,7 +18,8 @@ def work_of_pressure(pressure_kPa: FloatArray, volume_mm3: FloatArray) -> FloatA
     Parameters
     ----------
     pressure_kPa, volume_mm3
-        (k,) pressure and cavity volume, from the unloaded state on.
+        (k,) pressure and cavity volume in the order of the path, from the state without pressure
+        on.
     """
     steps = 0.5 * (pressure_kPa[1:] + pressure_kPa[:-1]) * np.diff(volume_mm3)
     # 1 kPa mm³ = 1e-3 MPa mm³ = 1e-3 mJ.
@@ -28,12 +29,12 @@ def work_of_pressure(pressure_kPa: FloatArray, volume_mm3: FloatArray) -> FloatA
 def energy_balance(work_mJ: FloatArray, stored_mJ: FloatArray) -> FloatArray:
     """Return |∫ p dV − U| / U for the stored energy U, element by element.
 
-    Energies below 1e-9 mJ are round-off of an unloaded state: 0 there, and infinite for work that
-    nothing stores.
+    Stored energies below 1e-9 mJ are round-off of the state without pressure: 0 there, and infinite
+    for work that nothing stores.
     """
     gap = np.abs(work_mJ - stored_mJ)
-    unloaded = np.where(gap > _ROUND_OFF_MJ, np.inf, 0.0)
-    return np.divide(gap, stored_mJ, out=unloaded, where=stored_mJ > _ROUND_OFF_MJ)
+    unstored = np.where(gap > _ROUND_OFF_MJ, np.inf, 0.0)
+    return np.divide(gap, stored_mJ, out=unstored, where=stored_mJ > _ROUND_OFF_MJ)
 
 
 def work_density(work_mJ: FloatArray, solid_volume_mm3: float) -> FloatArray:

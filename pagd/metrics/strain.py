@@ -1,4 +1,4 @@
-"""Strain and its rate under rising pressure."""
+"""Strain and its rate by pressure, where the pressure rises."""
 
 from __future__ import annotations
 

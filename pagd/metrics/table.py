@@ -34,7 +34,7 @@ def performance(
         The measured sections.
     history
         pressure_kPa, cavity_volume_mm3, stored_energy_mJ, smallest_gap_mm and recorded, (k,)
-        each, of every converged step from the unloaded state on, in the order of the path.
+        each, of every converged step from the state without pressure on, in the order of the path.
     solid_volume_mm3
         Volume of elastomer of the body that `history` is about: for a half model, either both
         are of the half or both of the whole.

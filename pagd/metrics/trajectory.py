@@ -50,7 +50,8 @@ class Trajectory:
     """Where the sections are at every recorded pressure, and how far they have turned.
 
     stations: the s stations, fixed end first and tip last.
-    pressure_kPa: (p,) recorded pressures, rising from 0: the unloaded state is the first.
+    pressure_kPa: (p,) recorded pressures in the order of the path, the state without pressure
+    first; behind a limit point they may fall.
     positions: (p, s, 3) station points on the centre line of the paper plane, in mm.
     rotations: (p, s, 3, 3) frames relative to the fixed end.
     joints: (p, s − 1, 3) rotation vectors (τ, β, γ) of the joints in radians.
@@ -128,10 +129,10 @@ def measure(sections: Sections, pressure_kPa: FloatArray, displacement: FloatArr
     sections
         The s sections, placed in the mesh.
     pressure_kPa
-        (p,) rising pressures.
+        (p,) recorded pressures in the order of the path; they may fall.
     displacement
         (p, n, 3) displacements of the mesh's nodes at these pressures, in mm. Where the first
-        pressure is not 0, the unloaded state is put before it.
+        pressure is not 0, the undeformed state is put before it.
     """
     if len(pressure_kPa) == 0 or pressure_kPa[0] > 0.0:
         pressure_kPa = np.pad(pressure_kPa, (1, 0))
@@ -153,7 +154,8 @@ def measure(sections: Sections, pressure_kPa: FloatArray, displacement: FloatArr
 def _followed(joints: FloatArray) -> FloatArray:
     """Return rotation vectors (p, j, 3), each on the branch nearest to the state before it.
 
-    ω and ω + 2πk n, n = ω/|ω|, are the same rotation. The unloaded state, ω = 0, is the first.
+    ω and ω + 2πk n, n = ω/|ω|, are the same rotation. Before the first state, the one without
+    pressure, stands the undeformed one, ω = 0.
     """
     followed = np.empty_like(joints)
     before = np.zeros_like(joints[0])
