@@ -145,8 +145,8 @@ def _sizes(upstream: list[Record]) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """JSON has no word for what is not a number."""
-    return None if isinstance(value, float) and math.isnan(value) else value
+    """JSON has no word for what is not a finite number."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _of_solve(solved: Record) -> dict[str, Any]:
@@ -155,7 +155,8 @@ def _of_solve(solved: Record) -> dict[str, Any]:
     The blocked force is the one of its own last pressure.
     """
     figures = solved.figures
-    path = {key: figures.get(key) for key in ("deepest_penetration_mm", "limit_points")}
+    known = ("deepest_penetration_mm", "limit_points", "largest_pressure_kPa")
+    path = {key: figures.get(key) for key in known}
     held = figures.get("blocked_force")
     if not held:
         return path
@@ -164,6 +165,7 @@ def _of_solve(solved: Record) -> dict[str, Any]:
         "blocked_force_pressure_kPa": held["pressure_kPa"],
         "blocked_force_variant": held["variant"],
         "blocked_force_status": held["status"],
+        "blocked_force_iterations": held.get("newton_iterations"),
     }
 
 

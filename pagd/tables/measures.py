@@ -42,7 +42,9 @@ MEASURES = (
     Column("measured_mode", "string", "", "bending, twisting, mixed or none, as measured"),
     Column("cavity_volume_mm3", "double", "mm³", "volume of the whole cavity"),
     Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
-    Column("stored_energy_mJ", "double", "mJ", "elastic energy of elastomer and paper"),
+    Column(
+        "stored_energy_mJ", "double", "mJ", "energy since zero pressure: elastic, contact, gravity"
+    ),
     Column("energy_balance", "double", "1", "|∫p dV − U| / U with the stored energy U"),
     Column("work_density_kJ_m3", "double", "kJ/m³", "work of the pressure by elastomer volume"),
     Column("strain_max", "double", "1", "largest principal logarithmic strain"),
@@ -63,6 +65,9 @@ PERFORMANCE = (
     Column("reason", "string", "", "why, where the status is not ok"),
     Column("fidelity", "string", "", "full: finite elements of the whole actuator"),
     Column("pressure_kPa", "double", "kPa", "pressure reached; the figures below are for it"),
+    Column(
+        "largest_pressure_kPa", "double", "kPa", "largest along the path; it may have fallen since"
+    ),
     Column("bending_deg", "double", "deg", "rotation of the tip about the width axis, unwrapped"),
     Column("twist_deg", "double", "deg", "rotation of the tip about the deformed axis"),
     Column("tip_x_mm", "double", "mm", "position of the tip along the undeformed actuator"),
@@ -72,7 +77,12 @@ PERFORMANCE = (
     Column("blocked_force_pressure_kPa", "double", "kPa", "pressure of that force, its last one"),
     Column("blocked_force_variant", "string", "", "edge: the tip is held; plate: it meets a plate"),
     Column("blocked_force_status", "string", "", "how the analysis of the blocked force ended"),
-    Column("first_contact_pressure_kPa", "double", "kPa", "chambers begin to touch; null: none do"),
+    Column(
+        "first_contact_pressure_kPa",
+        "double",
+        "kPa",
+        "gap passes the contact law's width; null: never",
+    ),
     Column("deepest_penetration_mm", "double", "mm", "of a chamber into another, on the path"),
     Column("work_mJ", "double", "mJ", "work of the pressure, ∫p dV"),
     Column("work_density_kJ_m3", "double", "kJ/m³", "work of the pressure by elastomer volume"),
@@ -84,8 +94,11 @@ PERFORMANCE = (
     Column("novelty", "double", "1", "distance to the nearest known design; null: not computed"),
     Column("tets", "int64", "1", "tetrahedra of the mesh"),
     Column("unknowns", "int64", "1", "unknowns of the finite-element system"),
-    Column("newton_iterations", "int64", "1", "Newton iterations of the whole path"),
-    Column("cpu_s", "double", "s", "processor time of all stages"),
-    Column("wall_s", "double", "s", "wall time of all stages, one after the other"),
+    Column("newton_iterations", "int64", "1", "Newton iterations of the free actuation"),
+    Column(
+        "blocked_force_iterations", "int64", "1", "Newton iterations, tip held; null: not computed"
+    ),
+    Column("cpu_s", "double", "s", "processor time of all stages, with both analyses"),
+    Column("wall_s", "double", "s", "wall time of all stages, with both analyses"),
     Column("peak_memory_MB", "double", "MB", "largest resident memory of any stage, 10^6 bytes"),
 )

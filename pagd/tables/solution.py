@@ -18,7 +18,9 @@ STATES = (
 HISTORY = (
     Column("pressure_kPa", "double", "kPa", "pressure of a converged step"),
     Column("cavity_volume_mm3", "double", "mm³", "volume of the cavity"),
-    Column("stored_energy_mJ", "double", "mJ", "elastic energy of elastomer and paper"),
+    Column(
+        "stored_energy_mJ", "double", "mJ", "energy since zero pressure: elastic, contact, gravity"
+    ),
     Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
     Column("newton_iterations", "int32", "1", "Newton iterations of the step"),
     Column("recorded", "bool", "", "whether the state is recorded, in their order"),

@@ -13,6 +13,7 @@ from pagd.record import read_record, write_record
 from pagd.stages.mesh import identity
 from pagd.stages.metrics import Folders, run
 from pagd.states import States, write_states
+from pagd.summary import performance_row
 from pagd.tables import BLOCKED, CHAMBERS, HISTORY, MEASURES, read_rows, write_table
 
 # The path passes a limit point at 35 kPa and ends at 25 kPa: states at 0, 10, 30 and 25 kPa.
@@ -39,6 +40,7 @@ BLOCKED_ENDING = {
     "reason": "Beyond 17 kPa no step of the pressure converged.",
     "pressure_kPa": 17.0,
     "blocked_force_N": 0.7,
+    "newton_iterations": 23,
 }
 
 
@@ -61,6 +63,7 @@ def solved(root, held=True):
         "solid_volume_mm3": 400.0,
         "deepest_penetration_mm": 0.002,
         "limit_points": 1,
+        "largest_pressure_kPa": 35.0,
         "initial_gap_mm": 1.2,
         "recorded": {
             "pressure_kPa": states.pressure_kPa.tolist(),
@@ -123,6 +126,9 @@ def test_the_record_is_the_row_of_all_designs(tmp_path):
         "blocked_force_pressure_kPa": 17.0,
         "blocked_force_variant": "edge",
         "blocked_force_status": "not_converged",
+        "blocked_force_iterations": 23,
+        "largest_pressure_kPa": 35.0,
+        "newton_iterations": 15,
         "first_contact_pressure_kPa": pytest.approx(22.0),
         "deepest_penetration_mm": 0.002,
         "limit_points": 1,
@@ -147,6 +153,28 @@ def test_without_a_held_tip_there_is_no_blocked_force(tmp_path):
     made, rows, _ = measured(tmp_path, held=False)
     assert {row["blocked_force_N"] for row in rows} == {None}
     assert "blocked_force_pressure_kPa" not in made.figures
+    assert performance_row(made)["blocked_force_iterations"] is None
+
+
+def test_a_balance_that_is_infinite_is_null(tmp_path, monkeypatch):
+    """Work of the pressure that nothing has stored."""
+    monkeypatch.setitem(HISTORY_COLUMNS, "stored_energy_mJ", np.zeros(6))
+    made, rows, _ = measured(tmp_path)
+    assert rows[-1]["energy_balance"] == np.inf
+    assert made.figures["energy_balance"] is None
+    assert made.figures["work_mJ"] == pytest.approx(2.625)
+
+
+def test_records_without_the_newer_figures_have_null_there(tmp_path, monkeypatch):
+    monkeypatch.delitem(BLOCKED_ENDING, "newton_iterations")
+    folders = solved(tmp_path)
+    older = read_record(folders.solve)
+    del older.figures["largest_pressure_kPa"]
+    write_record(older, folders.solve)
+    run(folders, tmp_path / "metrics", completed({}), sections=5)
+    row = performance_row(read_record(tmp_path / "metrics"))
+    assert (row["blocked_force_iterations"], row["largest_pressure_kPa"]) == (None, None)
+    assert row["blocked_force_status"] == "not_converged"
 
 
 def test_sections_of_a_mesh_without_a_design_stand_for_its_chambers(tmp_path):

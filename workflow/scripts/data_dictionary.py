@@ -52,8 +52,11 @@ TABLES = (
 Angles, tip, work and strain are those of the last recorded state, at `pressure_kPa`: the last
 pressure asked for, or that at which the free actuation ended early. The blocked force has an
 analysis of its own, which may end elsewhere: at `blocked_force_pressure_kPa`, and with
-`blocked_force_status`. `first_contact_pressure_kPa` is where the gap between chambers would
-close if nothing pushed back (`pagd/metrics/first_contact.py`).""",
+`blocked_force_status`. `largest_pressure_kPa` is above `pressure_kPa` where the pressure has
+fallen behind a limit point. `first_contact_pressure_kPa` is where the smallest gap passes the
+width of the contact law; it is null where walls never came so near, or contact was off.
+`newton_iterations` are those of the free actuation, `blocked_force_iterations` those with the tip
+held; the times cover all stages and both analyses.""",
     ),
     Table(
         "Performance by pressure",
@@ -87,12 +90,12 @@ Sections lie at the fixed end (0), in the middle of every gap, and at the tip (t
     Table(
         "Steps of the free actuation",
         ("designs/*/solve/history.parquet",),
-        "a converged step, the unloaded state first",
+        "a converged step, the state without pressure first",
         HISTORY,
         """\
 Rows are in the order of the path, along which the pressure falls behind a limit point. Figures
-of a half model are those of the whole actuator. Under gravity the stored energy counts its
-potential too, from the state without pressure on.""",
+of a half model are those of the whole actuator. The energy stored since the state without
+pressure is that of elastomer, paper and contact, and under gravity its potential too.""",
     ),
     Table(
         "Steps with a held tip",
@@ -112,7 +115,7 @@ states only.""",
         "a recorded state and node of `mesh.msh`",
         STATES,
         """\
-The unloaded state comes first. A half model has the nodes at y ≥ 0 only.""",
+The state without pressure comes first. A half model has the nodes at y ≥ 0 only.""",
     ),
     Table("Training designs", ("dataset/designs.parquet",), "a design", DESIGNS),
     Table(
