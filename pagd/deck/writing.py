@@ -104,7 +104,7 @@ def write_deck(
     _check_choices(solid_element, sheet_element, stress_unit)
     sheet = paper if "paper" in mesh.surfaces else None
     sections = (
-        _heading(material, sheet, stress_unit),
+        _heading(material, sheet, stress_unit, (solid_element, sheet_element)),
         _nodes(mesh),
         _solid(mesh, material, solid_element, stress_unit),
         _sheet(mesh, sheet, sheet_element, stress_unit) if sheet else (),
@@ -134,12 +134,21 @@ def _check_choices(solid: str, sheet: str, unit: str) -> None:
             raise InputError(f"{what} is {chosen!r}, but must be one of {', '.join(known)}.")
 
 
-def _heading(material: Elastomer, sheet: Sheet | None, unit: str) -> Iterator[str]:
+#: Element type that suits CalculiX → what to name in its place in a deck for Abaqus.
+_IN_ABAQUS = {"C3D10": "C3D10H", "S6": "STRI65"}
+
+
+def _heading(
+    material: Elastomer, sheet: Sheet | None, unit: str, elements: tuple[str, str]
+) -> Iterator[str]:
     materials = " and ".join(_ascii(m.name) for m in (material, sheet) if m)
     yield "*HEADING"
     yield f"Pneumatic actuator of {materials}"
-    yield f"** Units: mm, {STRESS_UNITS[unit][1]}, {unit}. Written by pagd for CalculiX; for Abaqus"
-    yield "** the element types would be C3D10H and STRI65."
+    yield f"** Units: mm, {STRESS_UNITS[unit][1]}, {unit}. Written by pagd."
+    used = elements if sheet else elements[:1]
+    others = [f"{_IN_ABAQUS[name]} for {name}" for name in used if name in _IN_ABAQUS]
+    if others:
+        yield f"** Element types for Abaqus would be {' and '.join(others)}."
 
 
 def _ascii(name: str) -> str:

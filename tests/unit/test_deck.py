@@ -12,7 +12,7 @@ from pagd.cli import main
 from pagd.deck import write_deck
 from pagd.deck.numbering import DECK_FACES, DECK_ORDER, face_numbers
 from pagd.errors import InputError
-from pagd.materials import Elastomer, elastomer, find_material, sheet
+from pagd.materials import Elastomer, Sheet, elastomer, find_material, sheet
 from pagd.mesh.msh import write_msh
 from pagd.mesh.primitives import box, hollow_block
 from pagd.mesh.types import TET_EDGES, Mesh, corner_volumes
@@ -240,6 +240,30 @@ def test_a_law_without_a_card_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="law is 'gent', but a deck can only hold mooney_rivlin"):
         write_deck(tmp_path / "deck.inp", actuator(), gent, None, [5.0])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("solid_element", "sheet_element", "paper", "others"),
+    [
+        ("C3D10", "S6", PAPER, ["C3D10H for C3D10 and STRI65 for S6"]),
+        ("C3D10H", "S6", PAPER, ["STRI65 for S6"]),
+        ("C3D10", "M3D6", PAPER, ["C3D10H for C3D10"]),
+        ("C3D10", "S6", None, ["C3D10H for C3D10"]),
+        ("C3D10H", "S6", None, []),
+        ("C3D10H", "STRI65", PAPER, []),
+        ("C3D10HS", "M3D6", PAPER, []),
+    ],
+)
+def test_element_types_for_abaqus_are_told_where_others_are_chosen(
+    solid_element: str, sheet_element: str, paper: Sheet | None, others: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "deck.inp"
+    chosen = {"solid_element": solid_element, "sheet_element": sheet_element}
+    write_deck(path, actuator(), material(), paper, [5.0], **chosen)
+    comments = [line for line in path.read_text().splitlines() if line.startswith("**")]
+    assert "** Units: mm, N, MPa. Written by pagd." in comments
+    told = [line for line in comments if "Abaqus" in line]
+    assert told == [f"** Element types for Abaqus would be {types}." for types in others]
 
 
 def test_command_writes_the_recorded_pressures(tmp_path: Path) -> None:
