@@ -118,14 +118,19 @@ def _report(study: Study, options: argparse.Namespace) -> None:
     print(page, end="")
 
 
+#: Options that change what is on the page, or where it is written to.
+_REPEATED = ("designs", "seed", "size", "time_limit", "config", "markdown")
+
+
 def _command(options: argparse.Namespace) -> str:
-    """The command that prints the same again."""
-    numbers = f"--designs {options.designs} --seed {options.seed} --size {options.size:g}"
-    lines = [f"python benchmarks/random_designs.py {numbers} --processes {options.processes}"]
-    if options.config:
-        lines.append(f"--config {shlex.quote(options.config)}")
-    if options.markdown:
-        lines.append(f"--markdown {shlex.quote(str(options.markdown))}")
+    """The command that prints the same again: with every option that is not as by default."""
+    usual = _parser().parse_args([])
+    lines = ["python benchmarks/random_designs.py"]
+    for name in _REPEATED:
+        value = getattr(options, name)
+        if value != getattr(usual, name):
+            text = f"{value:.12g}" if isinstance(value, float) else str(value)
+            lines.append(f"--{name.replace('_', '-')} {shlex.quote(text)}")
     return " \\\n  ".join(lines)
 
 

@@ -44,8 +44,8 @@ def as_markdown(report: Mapping[str, Any]) -> str:
         *_costs(summary),
         "## Contact and limit points",
         *_events(summary),
-        "## What did not go all the way",
-        *_cases(summary["others"], "Every design did."),
+        "## Free actuation that did not go all the way",
+        *_cases(summary["others"], "None: every design went all the way in free actuation."),
     ]
     if summary["spreads"]["newton_iterations_blocked"]:
         nothing = "None of those that were begun."
@@ -74,15 +74,16 @@ def _endings(summary: Mapping[str, Any]) -> list[str]:
     groups = summary["groups"]
     stops = ", ".join(f"`{stop}`" for stop in PHYSICAL_STOPS)
     whole = groups["all"]
-    share = _share(whole)
     text = (
-        f"**{whole['reached']} of {whole['valid']} valid designs ({share}) reached the last "
-        f"pressure or a physical stop** ({stops}) in free actuation; the goal is "
-        f"{_percent(GOAL, 0)}. Thin-walled are those with t or t_ab below {THIN_MM:g} mm."
+        f"**{whole['reached']} of {whole['valid']} valid designs ({_share(whole)}) reached the "
+        f"last pressure or a physical stop** ({stops}) in free actuation; the goal is "
+        f"{_percent(GOAL, 0)}. {_blocked(whole)}Thin-walled are those with t or t_ab below "
+        f"{THIN_MM:g} mm."
     )
     rows = [
         ("designs", _of_groups(groups, lambda g: str(g["designs"]))),
-        ("last pressure or physical stop", _of_groups(groups, _share)),
+        ("last pressure or physical stop, free", _of_groups(groups, _share)),
+        *_blocked_rows(groups),
         *_status_rows(groups, "statuses", "final status"),
         *_status_rows(groups, "blocked_statuses", "blocked force"),
     ]
@@ -93,8 +94,21 @@ def _of_groups(groups: Mapping[str, Any], cell: Callable[[Any], str]) -> list[st
     return [cell(group) for group in groups.values()]
 
 
-def _share(group: Mapping[str, Any]) -> str:
-    return "–" if group["share"] is None else _percent(group["share"])
+def _share(group: Mapping[str, Any], key: str = "share") -> str:
+    return "–" if group[key] is None else _percent(group[key])
+
+
+def _blocked(whole: Mapping[str, Any]) -> str:
+    if whole["blocked_share"] is None:
+        return ""
+    count = f"{whole['blocked_reached']} of {whole['valid']} ({_share(whole, 'blocked_share')})"
+    return f"The analysis of the blocked force did so for **{count}**. "
+
+
+def _blocked_rows(groups: Mapping[str, Any]) -> Iterable[tuple[str, list[str]]]:
+    if groups["all"]["blocked_share"] is not None:
+        cells = _of_groups(groups, lambda group: _share(group, "blocked_share"))
+        yield "last pressure or physical stop, blocked", cells
 
 
 def _status_rows(

@@ -22,6 +22,8 @@ PHYSICAL_STOPS: Final = (
     Status.self_collision.value,
 )
 
+_ALL_THE_WAY: Final = (Status.ok.value, *PHYSICAL_STOPS)
+
 #: Name, among the stages, of what a process needs besides them: the interpreter and imports.
 STARTING: Final = "starting"
 
@@ -106,7 +108,12 @@ class Result:
     @property
     def goes_all_the_way(self) -> bool:
         """Whether the free actuation reached its last pressure or a physical stop."""
-        return self.free_status in (Status.ok.value, *PHYSICAL_STOPS)
+        return self.free_status in _ALL_THE_WAY
+
+    @property
+    def blocked_goes_all_the_way(self) -> bool:
+        """Whether the analysis of the blocked force reached its last pressure or such a stop."""
+        return self.blocked_status in _ALL_THE_WAY
 
     @property
     def newton_iterations(self) -> int:

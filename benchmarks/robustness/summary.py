@@ -87,11 +87,16 @@ def spread(values: Iterable[float | None]) -> dict[str, float] | None:
 def _group(results: Sequence[Result]) -> dict[str, Any]:
     valid = [r for r in results if r.is_valid]
     reached = sum(r.goes_all_the_way for r in valid)
+    # None where no design has a blocked force at all, since none was asked for.
+    blocked = sum(r.blocked_goes_all_the_way for r in valid)
+    asked = any(r.blocked_status is not None for r in valid)
     return {
         "designs": len(results),
         "valid": len(valid),
         "reached": reached,
         "share": reached / len(valid) if valid else None,
+        "blocked_reached": blocked if asked else None,
+        "blocked_share": blocked / len(valid) if asked else None,
         "statuses": _counted(r.status for r in results),
         "blocked_statuses": _counted(r.blocked_status for r in results),
     }

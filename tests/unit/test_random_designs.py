@@ -414,9 +414,8 @@ def test_bad_options_are_one_sentence(
     assert said in capsys.readouterr().err
 
 
-def test_lines_of_text_are_no_longer_than_a_hundred() -> None:
-    reason = "No step beyond 12.34 kPa converged (corrections in mm: " + "1.0e+00, " * 14 + ")."
-    failed = result(1, status="not_converged", free_status="not_converged", reason=reason)
+def page_of(results: list[Result], asked: int) -> str:
+    """The page of some results, of designs that were asked for."""
     report = {
         "study": {"size_mm": 5.0, "time_limit_s": 1800.0},
         "command": "python benchmarks/random_designs.py",
@@ -424,9 +423,74 @@ def test_lines_of_text_are_no_longer_than_a_hundred() -> None:
             **{"processor": "A processor with quite a long name", "cores": 2, "memory_GB": 8.0},
             **{"system": "Linux", "processes": 2, "versions": {"numpy": "2.0", "scipy": "1.17"}},
         },
-        "summary": summarize([failed, result(2)], 200),
+        "summary": summarize(results, asked),
     }
-    page = as_markdown(report)
+    return as_markdown(report)
+
+
+def in_one_line(page: str) -> str:
+    return " ".join(page.split())
+
+
+def test_the_blocked_force_has_a_share_of_its_own_next_to_the_goal() -> None:
+    results = [
+        result(1, blocked_status="ok", blocked_iterations=9),
+        result(2, blocked_status="self_collision", blocked_iterations=9),
+        result(3, blocked_status="not_converged", blocked_iterations=9),
+        result(4),  # crashed before it, say
+        result(5, status="invalid_geometry", free_status="invalid_geometry"),
+    ]
+    group = summarize(results, 5)["groups"]["all"]
+    assert (group["reached"], group["blocked_reached"], group["valid"]) == (4, 2, 4)
+    assert (group["share"], group["blocked_share"]) == (1.0, 0.5)
+    page = page_of(results, 5)
+    assert (
+        "the goal is 97 %. The analysis of the blocked force did so for **2 of 4 (50.0 %)**."
+        in (in_one_line(page))
+    )
+    assert "| last pressure or physical stop, blocked | 50.0 % | 50.0 % | – | – |" in page
+
+
+def test_that_all_went_well_is_said_of_the_free_actuation_alone() -> None:
+    text = in_one_line(page_of([result(1, blocked_status="not_converged")], 1))
+    heading = "## Free actuation that did not go all the way"
+    assert f"{heading} None: every design went all the way in free actuation." in text
+    assert "blocked force did so for **0 of 1 (0.0 %)**" in text
+
+
+def test_without_blocked_force_the_page_has_no_share_of_it() -> None:
+    results = [result(1), result(2)]
+    assert summarize(results, 2)["groups"]["all"]["blocked_share"] is None
+    assert "blocked" not in page_of(results, 2)
+
+
+@pytest.mark.parametrize(
+    ("options", "printed"),
+    [
+        ([], ""),
+        (["--designs", "200", "--size", "5", "--processes", "1", "--out", "elsewhere"], ""),
+        (
+            ["--designs", "20", "--seed", "7", "--size", "2.5", "--time-limit", "60"],
+            " --designs 20 --seed 7 --size 2.5 --time-limit 60",
+        ),
+        (
+            ["--config", '{"solve": {"contact": false}}', "--markdown", "my page.md"],
+            """ --config '{"solve": {"contact": false}}' --markdown 'my page.md'""",
+        ),
+    ],
+)
+def test_the_printed_command_has_the_options_that_are_not_usual(
+    options: list[str], printed: str
+) -> None:
+    command = random_designs._command(random_designs._parser().parse_args(options))
+    found = in_one_line(command.replace("\\\n", " "))
+    assert found == "python benchmarks/random_designs.py" + printed
+
+
+def test_lines_of_text_are_no_longer_than_a_hundred() -> None:
+    reason = "No step beyond 12.34 kPa converged (corrections in mm: " + "1.0e+00, " * 14 + ")."
+    failed = result(1, status="not_converged", free_status="not_converged", reason=reason)
+    page = page_of([failed, result(2, blocked_status="ok")], 200)
     assert max(map(len, page.split("\n"))) <= 100
     assert "- r0001 (bending): `not_converged` at 50 kPa. No step beyond 12.34 kPa" in page
     assert "**2 of 200 designs are done so far.**" in page
