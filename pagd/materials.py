@@ -41,7 +41,7 @@ class Elastomer:
     poisson_ratio
         ν of the small-strain limit; sets the bulk modulus K = 2µ(1+ν)/(3(1−2ν)).
     density_kg_m3
-        Mass density.
+        Mass density, which gravity alone makes use of.
     largest_stretch
         Principal stretch beyond which the material is taken to be overstretched.
     source
