@@ -9,7 +9,7 @@ from pagd.actuation.settings import ELEMENTS, Actuation
 from pagd.errors import InputError
 from pagd.fem.assembly import Assembly
 from pagd.fem.bending import bending_terms
-from pagd.fem.contact import FaceContact
+from pagd.fem.contact import ContactLaw, FaceContact
 from pagd.fem.follower_pressure import FollowerPressure
 from pagd.fem.gravity import Gravity
 from pagd.fem.membrane import Membrane
@@ -38,6 +38,8 @@ class Body:
         The elastomer, and the sheet at the surface ``paper``.
     actuation
         Element, contact and gravity.
+    law
+        How contact is enforced; the default of :class:`ContactLaw` unless given.
 
     Attributes
     ----------
@@ -47,6 +49,10 @@ class Body:
         Which unknowns (size,) the clamp and the plane of symmetry hold.
     copies
         2 for a half model, 1 for a whole one.
+    contact
+        Contact of facing walls, where there are any and it is wanted.
+    initial_gap
+        Smallest gap (mm) between facing walls of the undeformed body; infinite without contact.
 
     Raises
     ------
@@ -56,7 +62,12 @@ class Body:
     """
 
     def __init__(
-        self, mesh: Mesh, material: Elastomer, paper: Sheet, actuation: Actuation | None = None
+        self,
+        mesh: Mesh,
+        material: Elastomer,
+        paper: Sheet,
+        actuation: Actuation | None = None,
+        law: ContactLaw | None = None,
     ) -> None:
         wanted = actuation or Actuation()
         self.mesh, self.material = mesh, material
@@ -67,7 +78,9 @@ class Body:
         self.size += self.solid.pressures if isinstance(self.solid, TaylorHoodSolid) else 0
         self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
         self.gravity = _gravity(mesh, material, wanted.gravity_m_s2)
-        self.contact = _contact(mesh) if wanted.contact else None
+        contact = _contact(mesh, law) if wanted.contact else None
+        self.initial_gap = contact.gap_at_rest() if contact else np.inf
+        self.contact = contact if np.isfinite(self.initial_gap) else None
         terms: list[EnergyTerm] = [self.solid, self.pressure, *_paper_terms(mesh, paper)]
         terms += [term for term in (self.gravity, self.contact) if term is not None]
         self.terms = tuple(terms)
@@ -143,7 +156,7 @@ def _gravity(
     return Gravity(mesh.points, mesh.tets, material.density_kg_m3, np.array(acceleration))
 
 
-def _contact(mesh: Mesh) -> FaceContact | None:
+def _contact(mesh: Mesh, law: ContactLaw | None) -> FaceContact | None:
     """Contact of the outer faces that look along the actuator with those that look back."""
     if "outer" not in mesh.surfaces:
         return None
@@ -152,4 +165,4 @@ def _contact(mesh: Mesh) -> FaceContact | None:
     slaves, masters = faces[along > _LOOKS_ALONG], faces[along < -_LOOKS_ALONG]
     if len(slaves) == 0 or len(masters) == 0:
         return None
-    return FaceContact(mesh.points, slaves, masters)
+    return FaceContact(mesh.points, slaves, masters, law)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.actuation.body import Body
+from pagd.actuation.limit_points import limit_points
 from pagd.actuation.recorder import Recorder
 from pagd.actuation.result import ActuationResult, Figures
 from pagd.actuation.settings import Actuation
@@ -66,7 +67,7 @@ def follow(
     solver.free()
     status, reason = _ending(followed, recorder)
     history = recorder.history()
-    figures = _figures(body, assembly, followed, solver) | _gaps(history)
+    figures = _figures(body, assembly, followed, solver) | _limits(history) | _gaps(body, history)
     return ActuationResult(status, reason, recorder.states, history, figures)
 
 
@@ -74,6 +75,7 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     start, failure = _at_rest(body, newton)
     recorder(Step(start, 0, True))
     if failure:
+        recorder.ending = Status.not_converged, failure
         return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure))
     control = StepControl(
         first=actuation.first_step_kPa * _KPA, smallest=actuation.smallest_step_kPa * _KPA
@@ -107,7 +109,10 @@ def _at_rest(body: Body, newton: Newton) -> tuple[State, str]:
         step /= 2
         if step < _SMALLEST_GRAVITY_STEP:
             body.gravity.share = share
-            return state, f"under {share:.1%} of gravity: {result.reason}"
+            return state, (
+                f"No equilibrium beyond {share:.1%} of gravity was found, before any pressure "
+                f"({result.reason})."
+            )
     # Once more, from as near as that: the force on a plate shows every micrometre.
     return newton.solve(state).state or state, ""
 
@@ -143,17 +148,26 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
     return figures
 
 
-def _gaps(history: dict[str, FloatArray]) -> Figures:
-    """What the history says of limit points, and of gaps where any walls are near."""
-    pressure, gap = history["pressure_kPa"], history["smallest_gap_mm"]
-    rises = np.diff(pressure) > 0
-    figures: Figures = {"limit_points": int(np.count_nonzero(rises[:-1] & ~rises[1:]))}
-    known = gap[np.isfinite(gap)]
-    if len(known) == 0:
-        return figures
-    figures["smallest_gap_mm"] = float(known[-1])
-    figures["deepest_penetration_mm"] = depth = max(-float(known.min()), 0.0)
-    if np.isfinite(gap[0]) and gap[0] > 0:
-        figures["initial_gap_mm"] = float(gap[0])
-        figures["penetration_share"] = depth / float(gap[0])
+def _limits(history: dict[str, FloatArray]) -> Figures:
+    pressure = history["pressure_kPa"]
+    return {
+        "largest_pressure_kPa": float(pressure.max()),
+        "limit_points": len(limit_points(pressure)),
+    }
+
+
+def _gaps(body: Body, history: dict[str, FloatArray]) -> Figures:
+    """What the history says of gaps, where there is contact."""
+    if body.contact is None:
+        return {}
+    gap = history["smallest_gap_mm"]
+    known, initial = gap[np.isfinite(gap)], body.initial_gap
+    depth = max(0.0, -float(known.min(initial=0.0)))
+    figures: Figures = {
+        "initial_gap_mm": initial,
+        "deepest_penetration_mm": depth,
+        "penetration_share": depth / initial,
+    }
+    if len(known):
+        figures["smallest_gap_mm"] = float(known[-1])
     return figures

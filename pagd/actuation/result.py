@@ -59,11 +59,12 @@ class ActuationResult:
     figures
         Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``steps``, ``rejected_steps``;
         ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator; ``linear_solver``;
-        ``limit_points``, maxima of the pressure along the path, and
-        ``volume_controlled_from_kPa`` where pressure control failed; with contact
-        ``initial_gap_mm``, ``smallest_gap_mm`` (at the end; negative for a penetration),
-        ``deepest_penetration_mm`` (of all steps) and ``penetration_share`` of the initial gap,
-        where any walls are near; where the tip is held ``variant`` and ``blocked_force_N``.
+        ``largest_pressure_kPa`` and ``limit_points``, its maxima along the path, and
+        ``volume_controlled_from_kPa`` where pressure control failed; where walls face each
+        other and contact is on ``initial_gap_mm`` of the undeformed body,
+        ``deepest_penetration_mm`` (of all steps), ``penetration_share`` of the initial gap and,
+        where any come near, ``smallest_gap_mm`` (of the last step with such; negative for a
+        penetration); where the tip is held ``variant`` and ``blocked_force_N``.
     """
 
     status: Status

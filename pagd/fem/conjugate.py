@@ -8,7 +8,7 @@ the first limit point the wanted loads are those of the branch that reaches them
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from pagd.fem.assembly import State
@@ -82,8 +82,12 @@ class ConjugatePath:
                     return replace(path, failure=result.reason)
                 continue
             point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])
-            for landed in self._landings(points[-1], point, wanted):
+            while wanted and points[-1].state.load < wanted[0] <= point.state.load:
+                landed = self._land(points[-1], point, wanted[0])
+                if landed is None:
+                    return replace(path, failure=f"no state found at the wanted {wanted[0]:g}")
                 path = _longer(path, landed)
+                del wanted[0]
                 stop = observe(landed)
                 if stop or not wanted:
                     return replace(path, stopped=stop or "")
@@ -101,15 +105,8 @@ class ConjugatePath:
         guess = interpolate([point.state for point in points], places, conjugate)
         return self._newton.solve(guess, conjugate, points[-1].state)
 
-    def _landings(self, before: _Point, after: _Point, wanted: list[float]) -> Iterator[Step]:
-        """States at the wanted loads between two points; those reached leave the list."""
-        while wanted and before.state.load < wanted[0] <= after.state.load:
-            landed = self._land(before, after, wanted[0])
-            wanted.pop(0)
-            if landed is not None:
-                yield landed
-
     def _land(self, before: _Point, after: _Point, load: float) -> Step | None:
+        """The state at a load between those of two points; none where no try converges."""
         iterations = 0
         for _ in range(_LANDINGS):
             ends = [before.state, after.state]

@@ -26,6 +26,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
+# How far faces may be apart, in mm, to face each other in the undeformed body; tried in turn.
+_DISTANCES = (2.0, 10.0, 50.0)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactLaw:
     """How contact is enforced.
@@ -41,7 +45,8 @@ class ContactLaw:
         Faces with a point nearer than this, in mm, must be coupled; where any are not, so are
         those within twice of it, since each search that finds more costs an analysis.
     deepest
-        A face farther behind another than this, in mm, is no penetration but the far side of it.
+        A face found farther behind another than this, in mm, is no penetration but the far side
+        of it; one that was near it before has jumped through.
     steady
         The turning of the normal enters the tangent up to the pressure of so much penetration, in
         mm: with all the pressure of a first guess that is too deep the tangent is indefinite.
@@ -78,17 +83,24 @@ class FaceContact:
         rule = triangle(4)
         self._values = shapes.triangle_values(rule.points)
         self._areas = _areas(points, slaves, rule.points) * rule.weights
-        self._starts = np.zeros(len(slaves) + 1, np.int64)
-        self._candidates = np.zeros(0, np.int64)
         self._pairs = np.zeros(0, np.int64)
         self._keys = np.zeros(0, np.int64)
-        self._found = _Found.room(len(slaves), len(self._values))
+        self._forget()
         self.dofs: IntArray = np.zeros((0, 36), np.int64)
+
+    def _forget(self) -> None:
+        self._starts = np.zeros(len(self._slaves) + 1, np.int64)
+        self._candidates = np.zeros(0, np.int64)
+        self._found = _Found.room(len(self._slaves), len(self._values))
 
     def update(self, unknowns: FloatArray) -> bool:
         """Look for near faces at a state; whether ``dofs`` has grown by new pairs."""
         positions = self._positions(unknowns)
-        self._search(positions)
+        self._project(positions, keeps=self.law.reach)
+        if self.smallest_gap <= -self.law.deepest:
+            # A step has jumped right through a wall; a search would not know it from its far side.
+            return False
+        self._search(positions, self.law.reach)
         self._project(positions, keeps=-np.inf)
         grown = not np.isin(self._near_keys(self.law.reach), self._keys).all()
         if grown:
@@ -97,6 +109,19 @@ class FaceContact:
             self.dofs = node_dofs(np.hstack([self._slaves[slave], self._masters[master]]))
         self._pairs = self._numbers(self._candidate_keys())
         return grown
+
+    def gap_at_rest(self) -> float:
+        """Smallest gap (mm) of the undeformed body; infinite where no two faces are near."""
+        gap = np.inf
+        for distance in _DISTANCES:
+            self._search(self._points, distance)
+            self._project(self._points, keeps=-np.inf)
+            gaps = self._found.gaps
+            gap = float(gaps[gaps > 0].min(initial=np.inf))
+            if gap <= distance:
+                break
+        self._forget()
+        return gap
 
     def internal_at_rest(self) -> FloatArray:
         """There are none."""
@@ -160,11 +185,11 @@ class FaceContact:
         count = self._points.size
         return self._points + unknowns[:count].reshape(-1, 3)
 
-    def _search(self, positions: FloatArray) -> None:
-        """Candidates: masters whose ball meets that of a slave, widened by the reach."""
+    def _search(self, positions: FloatArray, distance: float) -> None:
+        """Candidates: masters whose ball meets that of a slave, widened by a distance in mm."""
         centres, radii = _balls(positions, self._slaves)
         others, sizes = _balls(positions, self._masters)
-        largest = self.law.reach + sizes.max(initial=0.0)
+        largest = distance + sizes.max(initial=0.0)
         near = KDTree(others).query_ball_point(centres, radii + largest, return_sorted=True)
         counts = np.array([len(found) for found in near], np.int64)
         self._starts = np.concatenate([[0], np.cumsum(counts)])

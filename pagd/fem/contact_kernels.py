@@ -201,7 +201,7 @@ def find_gaps(
             if entries[e, q] >= 0 and gaps[e, q] < keeps:
                 kept = masters[candidates[entries[e, q]]]
                 gap = project(point, positions, kept, found, work, _STAYS_BEYOND)
-                if -deepest < gap < math.inf:
+                if gap < math.inf:
                     gaps[e, q] = gap
                     parameters[e, q, 0], parameters[e, q, 1] = found[0], found[1]
                     continue

@@ -16,7 +16,7 @@ STAGE_VERSIONS = {
     "repair": 1,
     "mesh": 1,
     "solve": 3,
-    "metrics": 2,
+    "metrics": 3,
     "figures": 3,
     "generative_figures": 2,
     "summary": 3,

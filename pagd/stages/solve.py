@@ -181,6 +181,7 @@ _HELD_FIGURES = (
     "newton_iterations",
     "steps",
     "rejected_steps",
+    "largest_pressure_kPa",
     "limit_points",
     "volume_controlled_from_kPa",
     "smallest_gap_mm",

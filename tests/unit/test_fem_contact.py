@@ -149,6 +149,33 @@ def test_the_far_side_of_a_wall_is_no_penetration() -> None:
     assert contact.smallest_gap == math.inf
 
 
+def test_the_gap_at_rest_needs_no_reach() -> None:
+    for gap in (0.3, 3.0, 30.0):
+        contact, points = facing(gap, ContactLaw(reach=0.5))
+        assert contact.gap_at_rest() == pytest.approx(gap)
+        # Nothing of it is left: the contact is as new.
+        assert contact.smallest_gap == math.inf
+        assert contact.energy(np.zeros(points.size), 0.0) == 0.0
+    lower, masters = patch(0.0, up=True)
+    upper, slaves = patch(200.0, up=False)
+    apart = FaceContact(np.vstack([lower, upper]), slaves + len(lower), masters)
+    assert apart.gap_at_rest() == math.inf
+
+
+def test_a_jump_through_a_wall_is_too_deep() -> None:
+    """From 0.3 mm before the other faces to 2 mm behind them, in a guess or a correction."""
+    contact, points = facing(0.3, ContactLaw())
+    contact.update(np.zeros(points.size))
+    through = np.zeros(points.shape)
+    through[25:, 2] = -2.3
+    assert contact.energy(through.ravel(), 0.0) > 0
+    assert contact.excess == pytest.approx(2.0 - 0.06)
+    assert not contact.update(through.ravel())
+    assert contact.excess == pytest.approx(2.0 - 0.06)
+    contact.update(np.zeros(points.size))
+    assert contact.smallest_gap == pytest.approx(0.3)
+
+
 def test_pairs_only_grow_and_keep_what_they_were() -> None:
     contact, points = facing(0.3, ContactLaw(reach=0.5))
     unknowns = np.zeros(points.size)
