@@ -87,8 +87,15 @@ def whole_of(half: Mesh) -> Mesh:
 def trajectory(
     name: str, mesh: Mesh, pressure_kPa: FloatArray, displacement: FloatArray
 ) -> Trajectory:
-    """Where the chambers of a design are at each pressure, and how far they have turned."""
+    """Where the chambers of a design of Table 2 are at each pressure, and how they have turned."""
+    return trajectory_of_design(design(name), mesh, pressure_kPa, displacement)
+
+
+def trajectory_of_design(
+    drawn: Design, mesh: Mesh, pressure_kPa: FloatArray, displacement: FloatArray
+) -> Trajectory:
+    """The same for any design."""
     half = "symmetry" in mesh.surfaces
-    stations = stations_of(design(name))
+    stations = stations_of(drawn)
     sections = place_sections(mesh.points, mesh.surfaces["paper"], stations, mirrored=half)
     return measure(sections, pressure_kPa, displacement)
