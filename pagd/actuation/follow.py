@@ -65,8 +65,8 @@ def follow(
     # Where the path ends early, how far it came is a result too.
     recorder.record_last()
     solver.free()
-    status, reason = _ending(followed, recorder)
     history = recorder.history()
+    status, reason = _ending(followed, recorder, history["pressure_kPa"])
     figures = _figures(body, assembly, followed, solver) | _limits(history) | _gaps(body, history)
     return ActuationResult(status, reason, recorder.states, history, figures)
 
@@ -117,7 +117,9 @@ def _at_rest(body: Body, newton: Newton) -> tuple[State, str]:
     return newton.solve(state).state or state, ""
 
 
-def _ending(followed: _Followed, recorder: Recorder) -> tuple[Status, str | None]:
+def _ending(
+    followed: _Followed, recorder: Recorder, pressure_kPa: FloatArray
+) -> tuple[Status, str | None]:
     path = followed.path
     if recorder.ending:
         return recorder.ending
@@ -125,9 +127,11 @@ def _ending(followed: _Followed, recorder: Recorder) -> tuple[Status, str | None
         means = "no step of the pressure"
         if followed.volume_controlled_from is not None:
             means += f" and, from {followed.volume_controlled_from:.4g} kPa on, of the volume"
-        return Status.not_converged, (
-            f"Beyond {path.load / _KPA:.4g} kPa {means} converged ({path.failure})."
-        )
+        beyond = f"Beyond {path.load / _KPA:.4g} kPa"
+        limits = limit_points(pressure_kPa)
+        if len(limits):
+            beyond += f", behind a limit point at {pressure_kPa[limits[0]]:.4g} kPa,"
+        return Status.not_converged, f"{beyond} {means} converged ({path.failure})."
     return Status.ok, None
 
 

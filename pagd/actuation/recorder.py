@@ -21,6 +21,9 @@ FloatArray = NDArray[np.float64]
 #: Share of the volume that may be stretched beyond the material's limit.
 OVERSTRETCHED_SHARE = 0.01
 
+# Growth of the cavity after which a state is recorded whatever its pressure.
+_GROWTH = 1.25
+
 _KPA = 1e-3  # MPa
 
 #: The force in N on what holds the tip, at a converged state.
@@ -69,8 +72,9 @@ class Recorder:
         energy = self._energy(state)
         gap = body.contact.smallest_gap if body.contact else math.inf
         volume = body.volume(state.unknowns)
-        self._rows.append((pressure, volume, energy, step.iterations, gap, math.nan))
-        if step.wanted:
+        force = self.force(state) if self.force else math.nan
+        self._rows.append((pressure, volume, energy, step.iterations, gap, force))
+        if step.wanted or self._has_grown():
             self.record_last()
         if self.progress:
             self.progress(pressure, step.iterations)
@@ -92,8 +96,15 @@ class Recorder:
             RecordedState(pressure, displacement, found.nodes, found.largest, found.percentile_99)
         )
         self._recorded.append(row)
-        if self.force:
-            self._rows[row] = (*self._rows[row][:-1], self.force(self._last))
+
+    def _has_grown(self) -> bool:
+        """Whether the pressure has fallen, and the cavity has grown much since the last record.
+
+        On a branch that falls no wanted pressure may come for long.
+        """
+        pressure, volume = self._rows[-1][:2]
+        largest = max(row[0] for row in self._rows)
+        return pressure < largest and volume > _GROWTH * self._rows[self._recorded[-1]][1]
 
     def history(self) -> dict[str, FloatArray]:
         """The columns of the history; see :class:`pagd.actuation.ActuationResult`."""

@@ -47,15 +47,15 @@ class ActuationResult:
     status, reason
         ``ok``, or why the last pressure was not reached.
     states
-        The unloaded state first, then the recorded pressures that were reached, and last the
-        state at which the analysis ended early, whatever its pressure.
+        The state without pressure first, then the recorded pressures that were reached, states
+        after every quarter of growth of the cavity where the pressure falls, and last the state at
+        which the analysis ended early, whatever its pressure.
     history
-        One row a converged step, in the order of the path, the unloaded state first:
+        One row a converged step, in the order of the path, the state without pressure first:
         ``pressure_kPa``, ``cavity_volume_mm3`` and ``stored_energy_mJ`` of the whole actuator
         (the latter since pressure zero, with the potential of gravity), ``newton_iterations``,
         ``recorded`` (the k-th true row is the k-th state), ``smallest_gap_mm`` between walls
-        (not a number where none are near); where the tip is held ``blocked_force_N``, of
-        recorded states only.
+        (not a number where none are near); where the tip is held ``blocked_force_N``.
     figures
         Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``steps``, ``rejected_steps``;
         ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator; ``linear_solver``;

@@ -39,10 +39,9 @@ def test_the_edge_stays_and_presses() -> None:
     assert (found.status, found.figures["variant"]) == (Status.ok, "edge")
     assert not found.states[-1].displacement[tip_edge(beam()), 2].any()
     force, recorded = found.history["blocked_force_N"], found.history["recorded"]
-    # Known at the recorded pressures, and rising with them.
-    np.testing.assert_array_equal(np.isfinite(force), recorded)
-    assert force[recorded][0] == pytest.approx(0.0, abs=1e-12)
-    assert (np.diff(force[recorded]) > 0).all()
+    assert force[0] == pytest.approx(0.0, abs=1e-12)
+    assert (np.diff(force) > 0).all()
+    assert len(force) > recorded.sum() == len(found.states)
     assert found.figures["blocked_force_N"] == force[-1]
 
 
