@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-__all__ = ["OF_DESIGN", "SUPPORTS", "TOGETHER"]
+__all__ = ["SUPPORTS", "TOGETHER", "captions_of_design"]
 
 _ANGLES = (
     "Bending is the rotation about the width axis, positive towards the paper, and twist that about"
@@ -19,15 +19,16 @@ SUPPORTS: Final[Mapping[str, str]] = {
     "plate": "on a rigid plate",
 }
 
-#: Pictures of one design, in the order of the page.
-OF_DESIGN: Final[Mapping[str, str]] = {
+# Pictures of one design, in the order of the page.
+_OF_DESIGN: Final[Mapping[str, str]] = {
     "deformed": "Deformed shapes at rising pressure, undeformed in grey, by finite elements at"
     " finite strain. Colour: largest principal logarithmic strain; its bar ends where 1 % of the"
     " nodes are beyond.",
     "contact": "Left: the smallest gap between walls that face each other; what is below zero is"
     " penetration, by which the penalty of frictionless contact works. Right: the actuator at the"
-    " last pressure of each analysis, transparent; red: outside that is nearer than 0.1 mm to"
-    " another wall, both sides counted.",
+    " last pressure of each analysis, transparent; where walls touch, red: outside that is nearer"
+    " than {touching} mm to another wall, where the contact law begins to push, both sides"
+    " counted.",
     "blocked_force": "Left: the force of the actuator on what holds its tip from the start,"
     " positive downwards; dots are recorded states. Right: the last shape so held, beside the free"
     " one at the nearest recorded pressure, undeformed in grey.",
@@ -65,3 +66,12 @@ TOGETHER: Final[Mapping[str, str]] = {
     " the nearest training design in the space of standardised and one-hot parameters; 0: the"
     " design is itself in the training set. Looks as in the plot of bending and twist.",
 }
+
+
+def captions_of_design() -> dict[str, str]:
+    """Return the captions of the pictures of one design by their names, in the page's order."""
+    from pagd.figures.style import number  # imports Matplotlib
+    from pagd.figures.touching import touching_mm  # imports SciPy
+
+    touching = number(touching_mm(), 2)
+    return {name: text.format(touching=touching) for name, text in _OF_DESIGN.items()}

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pagd.figures.deformed import VIEW, Shapes, draw_triad
 from pagd.figures.load import (
@@ -32,7 +33,7 @@ from pagd.figures.style import (
     number,
     save,
 )
-from pagd.figures.touching import outside_faces, touching_triangles
+from pagd.figures.touching import deformed_faces, touching_mm, touching_triangles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,10 +87,11 @@ def contact_figure(
     )
     _draw_gaps(curve, analyses, first_contact_kPa)
     for place, (name, kept) in zip(places, states.items(), strict=True):
-        image, area = picture_of_touching(kept, (225.0 * width, 225.0 * _HEIGHT))
+        touches = _touches(analyses[name])
+        image, area = picture_of_touching(kept, (225.0 * width, 225.0 * _HEIGHT), touches=touches)
         place.imshow(image)
         place.set_axis_off()
-        there = f"{number(area, 0)} mm² in contact" if area else "no contact"
+        there = f"{_told(area)} in contact" if touches else "no contact"
         title = f"{name}, {kilopascals(kept.pressure_kPa[-1])}: {there}"
         place.set_title(title, color=_LOOKS[name][0])
     figure.suptitle(f"{heading}: contact between walls", fontweight="bold")
@@ -97,10 +99,13 @@ def contact_figure(
     return figure
 
 
-def picture_of_touching(states: States, pixels: tuple[float, float]) -> tuple[Image, float]:
+def picture_of_touching(
+    states: States, pixels: tuple[float, float], *, touches: bool
+) -> tuple[Image, float]:
     """Return the last state, transparent, with what touches in red, and its area in mm².
 
-    `pixels` are the largest width and height. Touching walls are two, and their areas are added.
+    Whether anything `touches` is what the analysis says of its own gaps. `pixels` are the largest
+    width and height. Touching walls are two, and their areas are added.
     """
     shapes = Shapes.of(states)
     points = shapes.points[-1]
@@ -109,7 +114,7 @@ def picture_of_touching(states: States, pixels: tuple[float, float]) -> tuple[Im
         Sheet(points=points, triangles=shapes.triangles, colour=BASE, opacity=0.18),
         Wire(points=points, edges=shapes.edges, colour=FAINT),
     ]
-    corners = touching_triangles(outside_faces(states.mesh, states.displacement[-1]))
+    corners = _touching(states) if touches else np.zeros((0, 3, 3))
     if len(corners):
         where, triangles = corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
         parts.insert(0, Sheet(points=where, triangles=triangles, colour=_TOUCHING, smooth=False))
@@ -119,8 +124,25 @@ def picture_of_touching(states: States, pixels: tuple[float, float]) -> tuple[Im
     return render(parts, VIEW, box, scale), area
 
 
+def _touching(states: States) -> NDArray[np.float64]:
+    """Return what touches (t, 3, 3) in the last state, of the surface that contact acts on."""
+    return touching_triangles(deformed_faces(states.mesh, states.displacement[-1], ("outer",)))
+
+
+def _touches(steps: Steps) -> bool:
+    """Tell whether walls touch in the last recorded state."""
+    gaps = steps.smallest_gap_mm[steps.recorded]
+    return bool(len(gaps) and gaps[-1] < touching_mm())
+
+
+def _told(area_mm2: float) -> str:
+    return f"{number(area_mm2, 0)} mm²" if area_mm2 >= 0.5 else "less than 1 mm²"
+
+
 def _draw_gaps(axes: Axes, analyses: Mapping[str, Steps], first_contact_kPa: float | None) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.9)
+    label = f"walls touch below {number(touching_mm(), 2)} mm"
+    axes.axhline(touching_mm(), color=_TOUCHING, linewidth=0.9, linestyle=":", label=label)
     for name, steps in analyses.items():
         colour, line = _LOOKS[name]
         axes.plot(

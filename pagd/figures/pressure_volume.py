@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_pressure_volume", "limit_points", "pressure_volume_figure", "volume_controlled"]
+__all__ = ["draw_pressure_volume", "pressure_volume_figure", "volume_controlled"]
 
 _CONTROLLED, _WORK = "#d55e00", "#cfe2f0"
 
@@ -55,16 +55,6 @@ def pressure_volume_figure(
     return figure
 
 
-def limit_points(pressure_kPa: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the steps at which the pressure, along the path, was highest before it fell.
-
-    >>> limit_points(np.array([0.0, 1.0, 3.0, 2.0, 2.5])).tolist()
-    [2]
-    """
-    rise = np.diff(pressure_kPa)
-    return np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] < 0.0)) + 1
-
-
 def volume_controlled(pressure_kPa: NDArray[np.float64], start_kPa: float | None) -> slice | None:
     """Return the steps under control of the volume, the last one before them included, or None.
 
@@ -78,6 +68,8 @@ def volume_controlled(pressure_kPa: NDArray[np.float64], start_kPa: float | None
 
 
 def _mark_limits(axes: Axes, volume: NDArray[np.float64], pressure: NDArray[np.float64]) -> None:
+    from pagd.actuation.limit_points import limit_points  # the package imports the solver
+
     for i, step in enumerate(limit_points(pressure)):
         label = "limit point" if i == 0 else None
         place = volume[step], pressure[step]

@@ -1,41 +1,53 @@
-"""Where the outside of a deformed body touches itself."""
+"""Where the outside of a deformed body touches itself.
+
+Two walls touch where the gap between them is below the width of the contact law, that is where it
+pushes. Curved faces are divided into pieces twice: coarsely, to leave out what is near nothing,
+and finely, to mark what touches.
+"""
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from pagd.fem.shapes import triangle_values
-from pagd.figures.surface import OUTSIDE, is_half, split_faces
+from pagd.figures.pieces import Pieces
+from pagd.figures.surface import is_half
 from pagd.mesh.types import Mesh
+
+if TYPE_CHECKING:
+    from pagd.fem.contact import ContactLaw
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-__all__ = ["TOUCHING_MM", "outside_faces", "refined", "touching_triangles"]
+__all__ = ["deformed_faces", "touching_mm", "touching_triangles"]
 
-#: Walls nearer than this count as touching: contact by a penalty holds them a little apart.
-TOUCHING_MM: Final = 0.1
-# How much farther than the touching distance a facing triangle's middle may lie, sideways.
-_SLACK_MM: Final = 0.4
-# Faces are divided into triangles whose sides are about this long.
-_SIDE_MM: Final = 0.5
-# A place farther behind the other is no penetration, but the far side of a thin wall.
-_DEEPEST_MM: Final = 0.2
-# Normals of faces that touch are opposite, this being their product at most: those of the two
-# sides of a slanted wall's sharp edge are not.
-_OPPOSITE: Final = -0.8
+# Sides of the pieces that the search begins with, and of those that are marked.
+_COARSE_MM, _FINE_MM = 5.0, 0.5
+# Where pieces of these sides would be more than so many, as where walls balloon, they are larger.
+_MOST: Final = 40_000
+# Product of the normals of two pieces that may face each other, at most: coarse ones turn within;
+# of the fine ones the two sides of a slanted wall's sharp edge must not count.
+_TURNED, _OPPOSITE = -0.1, -0.8
+# The closest point on a curved face, from a piece's middle on, is found in so many iterations.
+_ITERATIONS: Final = 4
 
 
-def outside_faces(mesh: Mesh, displacement: FloatArray) -> FloatArray:
-    """Return the deformed six-node faces (f, 6, 3) that are seen from outside, in mm.
+def touching_mm() -> float:
+    """Return the gap in mm below which walls touch: there the contact law begins to push."""
+    return _law().width
+
+
+def deformed_faces(mesh: Mesh, displacement: FloatArray, names: Iterable[str]) -> FloatArray:
+    """Return the deformed six-node faces (f, 6, 3) of the named surfaces there are, in mm.
 
     Those of a half model come with their mirror images.
     """
-    nodes = np.vstack([mesh.surfaces[name] for name in OUTSIDE if name in mesh.surfaces])
+    nodes = np.vstack([mesh.surfaces[name] for name in names if name in mesh.surfaces])
     faces = (mesh.points + displacement)[nodes]
     if not is_half(mesh):
         return np.asarray(faces)
@@ -44,82 +56,105 @@ def outside_faces(mesh: Mesh, displacement: FloatArray) -> FloatArray:
     return np.concatenate([faces, mirrored])
 
 
-def touching_triangles(faces: FloatArray, distance_mm: float = TOUCHING_MM) -> FloatArray:
-    """Return the parts of a closed surface whose distance to a part facing it is small.
+def touching_triangles(faces: FloatArray, distance_mm: float | None = None) -> FloatArray:
+    """Return the parts of a surface whose distance to a part facing it is small.
 
     Parameters
     ----------
     faces
         Six-node faces (f, 6, 3) in mm, outward, corners before the middles of the sides.
     distance_mm
-        Largest gap.
+        Gap below which parts touch; that of the contact law unless given.
 
     Returns
     -------
     triangles
         (t, 3, 3) corners of the small triangles, on the curved faces, that touch others.
     """
-    coarse = _split(faces)
-    near, _, _ = _facing(coarse, _longest_side(coarse) + distance_mm)
-    # Only what may touch is divided finely: it is a small part of the surface.
-    fine = refined(faces[near.reshape(-1, 4).any(axis=1)], _SIDE_MM)
-    found, gap, opposite = _facing(fine, distance_mm + _SLACK_MM)
-    touching = found & opposite & (gap < distance_mm) & (gap > -_DEEPEST_MM)
-    return np.asarray(fine[touching])
+    law = _law()
+    distance = law.width if distance_mm is None else distance_mm
+    coarse = Pieces.of(faces).divided(_COARSE_MM, _MOST)
+    near = np.unique(_facing(coarse, distance, _TURNED))
+    fine = coarse.at(near).divided(_FINE_MM, _MOST)
+    one, other = _nearest(fine, _facing(fine, distance, _OPPOSITE))
+    gap = _gaps(fine, one, other)
+    return fine.corners[one[(gap < distance) & (gap > -law.deepest)]]
 
 
-def refined(faces: FloatArray, side_mm: float) -> FloatArray:
-    """Return triangles (t, 3, 3) of about `side_mm` whose corners lie on the curved faces."""
-    if len(faces) == 0:
-        return np.zeros((0, 3, 3))
-    parts = int(np.ceil(_longest_side(faces[:, :3]) / side_mm))
-    places, triangles = _lattice(parts)
-    points = np.einsum("pk,fki->fpi", triangle_values(places), faces)
-    return np.asarray(points[:, triangles].reshape(-1, 3, 3))
+def _law() -> ContactLaw:
+    from pagd.fem.contact import ContactLaw  # imports Numba
+
+    return ContactLaw()
 
 
-def _lattice(parts: int) -> tuple[FloatArray, IntArray]:
-    """Return barycentric points and triangles of a triangle whose sides have so many parts."""
-    pairs = [(i, j) for i in range(parts + 1) for j in range(parts + 1 - i)]
-    number = {pair: k for k, pair in enumerate(pairs)}
-    upright = [((i, j), (i + 1, j), (i, j + 1)) for i, j in pairs if i + j < parts]
-    turned = [((i + 1, j), (i + 1, j + 1), (i, j + 1)) for i, j in pairs if i + j < parts - 1]
-    triangles = [[number[pair] for pair in three] for three in (*upright, *turned)]
-    second, third = np.array(pairs, dtype=np.float64).T / parts
-    return np.column_stack([1.0 - second - third, second, third]), np.array(triangles)
+def _facing(pieces: Pieces, distance_mm: float, opposite: float) -> IntArray:
+    """Return the pairs (p, 2) of pieces that may be nearer to each other than a distance.
 
-
-def _split(faces: FloatArray) -> FloatArray:
-    """Return the four flat triangles (4f, 3, 3) of each face, one face after the other."""
-    four = split_faces(np.arange(6)[None])
-    return np.asarray(faces[:, four].reshape(-1, 3, 3))
-
-
-def _facing(
-    corners: FloatArray, reach_mm: float
-) -> tuple[NDArray[np.bool_], FloatArray, NDArray[np.bool_]]:
-    """Tell which triangles have another facing them within reach, the gap, and if it is opposite.
-
-    The gap is that along the normal; what it is of those without another means nothing.
+    The product of the normals of a pair is below `opposite`.
     """
-    if len(corners) == 0:
-        nothing = np.zeros(0, np.bool_)
-        return nothing, np.zeros(0), nothing
-    middles = corners.mean(axis=1)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    # In places and normals together, a normal of length 1 counting as the reach: what faces a
-    # triangle has the opposite normal, and what lies beside it on the same wall is twice as far.
-    tree = KDTree(np.hstack([middles, reach_mm * normals]))
-    wanted = np.hstack([middles, -reach_mm * normals])
-    _, other = tree.query(wanted, distance_upper_bound=1.2 * reach_mm)
-    found = other < len(corners)
-    other = np.where(found, other, 0)
-    gap = np.einsum("ij,ij->i", middles[other] - middles, normals)
-    opposite = np.einsum("ij,ij->i", normals, normals[other]) < _OPPOSITE
-    return found, gap, opposite
+    if len(pieces.face) == 0:
+        return np.zeros((0, 2), np.int64)
+    # No point of a triangle is farther from its middle than two thirds of its longest side.
+    reach = distance_mm + 4.0 / 3.0 * float(pieces.longest_sides.max())
+    pairs = KDTree(pieces.middles).query_pairs(reach, output_type="ndarray")
+    normals = pieces.normals
+    turned = _products(*(normals[side] for side in pairs.T)) < opposite
+    pairs = pairs[turned]
+    hulls = pieces.hulls
+    for side in (0, 1):
+        pairs = pairs[_overlap(hulls, normals[pairs[:, side]], pairs, distance_mm)]
+    return np.asarray(pairs, dtype=np.int64)
 
 
-def _longest_side(corners: FloatArray) -> float:
-    sides = corners - np.roll(corners, 1, axis=1)
-    return float(np.linalg.norm(sides, axis=2).max(initial=0.0))
+def _overlap(
+    hulls: FloatArray, axes: FloatArray, pairs: IntArray, distance_mm: float
+) -> NDArray[np.bool_]:
+    """Tell of which pairs the hulls (t, 6, 3), along an axis (p, 3) each, are not far apart."""
+    one, other = (np.einsum("pki,pi->pk", hulls[side], axes) for side in pairs.T)
+    apart = np.maximum(
+        other.min(axis=1) - one.max(axis=1),
+        one.min(axis=1) - other.max(axis=1),
+    )
+    return np.asarray(apart < distance_mm)
+
+
+def _nearest(pieces: Pieces, pairs: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the pieces that have others facing them, and of those the nearest to each."""
+    one, other = np.vstack([pairs, pairs[:, ::-1]]).T
+    middles = pieces.middles
+    order = np.lexsort((np.linalg.norm(middles[other] - middles[one], axis=1), one))
+    found, first = np.unique(one[order], return_index=True)
+    return found, other[order][first]
+
+
+def _gaps(pieces: Pieces, one: IntArray, other: IntArray) -> FloatArray:
+    """Return the distances (k,) of the middles of pieces from the faces of others.
+
+    They are negative behind a face. A foot may lie beyond the other piece by half of its size.
+    """
+    points, there = pieces.middles[one], pieces.at(other)
+    low, high = there.places.min(axis=1), there.places.max(axis=1)
+    slack = (high - low) / 2.0
+    places = there.places.mean(axis=1)
+    for _ in range(_ITERATIONS):
+        tangents = there.tangents(places)
+        step = _step(tangents, points - there.positions(places))
+        second = np.clip(places[:, 1:] + step, (low - slack)[:, 1:], (high + slack)[:, 1:])
+        places = np.column_stack([1.0 - second.sum(axis=1), second])
+    away = points - there.positions(places)
+    tangents = there.tangents(places)
+    outward = _products(np.cross(tangents[:, 0], tangents[:, 1]), away)
+    return np.asarray(np.copysign(np.linalg.norm(away, axis=1), outward))
+
+
+def _step(tangents: FloatArray, away: FloatArray) -> FloatArray:
+    """Return the changes (k, 2) of coordinates that lead along the tangents (k, 2, 3) by `away`."""
+    first, second = tangents[:, 0], tangents[:, 1]
+    aa, ab, bb = (_products(*two) for two in ((first, first), (first, second), (second, second)))
+    a, b = _products(first, away), _products(second, away)
+    determinant = np.maximum(aa * bb - ab**2, 1e-30)
+    return np.column_stack([bb * a - ab * b, aa * b - ab * a]) / determinant[:, None]
+
+
+def _products(one: FloatArray, other: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ki,ki->k", one, other))

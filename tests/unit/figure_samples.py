@@ -41,9 +41,19 @@ def states_of(mesh):
 
 
 def solved(
-    folder, half=False, status=Status.ok, reason=None, contact=True, support="edge", **figures
+    folder,
+    half=False,
+    status=Status.ok,
+    reason=None,
+    contact=True,
+    support="edge",
+    closing=0.007,
+    **figures,
 ):
-    """Leave what the stages mesh, solve and metrics leave for one design."""
+    """Leave what the stages mesh, solve and metrics leave for one design.
+
+    The gap between walls, 0.2 mm, closes by so many mm/kPa.
+    """
     mesh = block(half)
     for stage in ("mesh", "solve", "metrics"):
         (folder / stage).mkdir(parents=True)
@@ -55,7 +65,7 @@ def solved(
         strain=recorded.strain[1:],
     )
     write_states(kept, folder / "solve" / "states.parquet")
-    write_table(folder / "solve" / "history.parquet", HISTORY, steps(contact))
+    write_table(folder / "solve" / "history.parquet", HISTORY, steps(contact, STEPS, closing))
     if support != "none":
         held(folder, kept, contact)
     write_record(solve_record(folder.name, contact, support), folder / "solve")
@@ -72,10 +82,10 @@ STEPS = np.array([0.0, 5.0, *PRESSURE])
 FORCE = np.where(STEPS == 5.0, np.nan, 0.02 * STEPS + 1e-4 * STEPS**2)
 
 
-def steps(contact=True, pressure=STEPS):
-    """Columns of a history whose gap closes between 20 and 30 kPa."""
+def steps(contact=True, pressure=STEPS, closing=0.007):
+    """Columns of a history whose gap closes, unless more slowly, between 20 and 30 kPa."""
     volume = 1000.0 + 20.0 * STEPS
-    gap = np.where(STEPS < 5.0, np.nan, 0.2 - 0.007 * STEPS)
+    gap = np.where(STEPS < 5.0, np.nan, 0.2 - closing * STEPS)
     work = np.concatenate([[0.0], np.cumsum((pressure[1:] + pressure[:-1]) / 2 * np.diff(volume))])
     return {
         "pressure_kPa": pressure,

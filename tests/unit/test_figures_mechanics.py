@@ -5,7 +5,6 @@ import json
 
 import numpy as np
 import pytest
-import pyvista as pv
 from figure_samples import (
     FORCE,
     SIZE,
@@ -32,11 +31,11 @@ from pagd.figures.load import Steps
 from pagd.figures.page.mechanics import contact_note, mechanics_of
 from pagd.figures.pressure_volume import (
     draw_pressure_volume,
-    limit_points,
     pressure_volume_figure,
     volume_controlled,
 )
-from pagd.figures.touching import outside_faces, refined, touching_triangles
+from pagd.figures.surface import OUTSIDE
+from pagd.figures.touching import deformed_faces
 from pagd.record import write_record
 from pagd.stages import figures as stage
 from pagd.tables import TRAJECTORY, write_table
@@ -49,8 +48,8 @@ FALLING = np.array([0.0, 5.0, 10.0, 20.0, 15.0])
 KNOWN = np.column_stack([STEPS, FORCE])[STEPS != 5.0]
 
 
-def steps_of(pressure=STEPS, contact=True, force=None):
-    columns = steps(contact, pressure)
+def steps_of(pressure=STEPS, contact=True, force=None, closing=0.007):
+    columns = steps(contact, pressure, closing)
     names = [field.name for field in dataclasses.fields(Steps)][:-1]
     return Steps(**{name: columns[name] for name in names}, blocked_force_N=force)
 
@@ -100,12 +99,6 @@ def test_states_of_a_path_that_turns_are_drawn_to_its_end():
 # ---- pressure and volume --------------------------------------------------------------------
 
 
-def test_limit_points_are_the_maxima_along_the_path():
-    assert limit_points(STEPS).tolist() == []
-    assert limit_points(FALLING).tolist() == [3]
-    assert limit_points(np.array([0.0, 2.0, 1.0, 3.0, 1.0])).tolist() == [1, 3]
-
-
 def test_the_section_under_control_of_the_volume_begins_where_the_pressure_stopped():
     assert volume_controlled(FALLING, None) is None
     assert volume_controlled(FALLING, 20.0) == slice(3, None)
@@ -137,83 +130,20 @@ def test_the_shaded_area_is_the_work():
     assert "20 kPa" in labels(figure)
 
 
-def test_a_rising_path_has_no_limit_in_its_picture():
-    names = labels(pressure_volume_figure("d", steps_of()))
+@pytest.mark.parametrize("pressure", [STEPS, np.array([0.0, 10.0, 9.999, 20.0, 30.0])])
+def test_a_rising_path_has_no_limit_in_its_picture(pressure):
+    """A fall by less than the tolerance of the iteration is none."""
+    names = labels(pressure_volume_figure("d", steps_of(pressure)))
     assert not {"limit point", "steps under control of the volume"} & set(names)
 
 
 # ---- contact --------------------------------------------------------------------------------
 
 
-def with_middles(corners):
-    """Flat six-node faces (t, 6, 3) of triangles (t, 3, 3)."""
-    middles = (corners + np.roll(corners, -1, axis=1)) / 2
-    return np.concatenate([corners, middles], axis=1)
-
-
-def two_boxes(gap):
-    """Faces of two boxes, those of 3 × 4 mm between them `gap` apart."""
-    left = pv.Box((0.0, 5.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
-    right = pv.Box((5.0 + gap, 9.0, 0.0, 3.0, 0.0, 4.0)).triangulate()
-    both = left.append_polydata(right)
-    return with_middles(np.asarray(both.points, float)[both.faces.reshape(-1, 4)[:, 1:]])
-
-
-def area(triangles):
-    a, b, c = (triangles[:, i] for i in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-
-
-@pytest.mark.parametrize(
-    ("gap", "expected"), [(0.05, 24.0), (0.0, 24.0), (-0.05, 24.0), (0.15, 0.0), (1.0, 0.0)]
-)
-def test_touching_faces_are_the_two_between(gap, expected):
-    triangles = touching_triangles(two_boxes(gap))
-    assert area(triangles) == pytest.approx(expected, rel=0.02)
-    if expected:
-        assert np.abs(triangles[..., 0] - 5.0 - gap / 2).max() < 0.1
-
-
-def test_the_sides_of_a_sharp_edge_do_not_touch():
-    """Slanted walls meet the sides of a chamber at as little as 45°."""
-    wedge = pv.PolyData(
-        np.array([[0, 0, 0], [6, 0, 0], [6, 6, 0], [0, 0, 6], [6, 0, 6], [6, 6, 6.0]]),
-        faces=[3, 0, 2, 1, 3, 3, 4, 5, 4, 0, 1, 4, 3, 4, 1, 2, 5, 4, 4, 0, 3, 5, 2],
-    ).triangulate()
-    corners = np.asarray(wedge.points, float)[wedge.faces.reshape(-1, 4)[:, 1:]]
-    assert area(corners) > 100.0
-    assert len(touching_triangles(with_middles(corners))) == 0
-
-
-def test_a_wall_touches_with_its_bulge():
-    """The six nodes of the bulge are 0.5 mm and more away from the flat wall, its middle is not."""
-    x = np.array([[-4, -3], [4, -3], [0, 5], [0, -3], [2, 1], [-2, 1]], dtype=float)
-    top = 0.5 * (x**2).sum(axis=1)
-    bulge = np.column_stack([x, top])
-    flat = with_middles(np.array([[[-9, -9, -0.05], [0, 9, -0.05], [9, -9, -0.05]]])[:, [0, 2, 1]])
-    found = touching_triangles(np.concatenate([bulge[None, [0, 2, 1, 5, 4, 3]], flat]))
-    assert top.min() > 0.5
-    middles = found.mean(axis=1)
-    # Where the paraboloid x² / 2 is nearer than 0.1 mm to the wall: within 0.32 mm.
-    assert len(found) > 0
-    assert np.linalg.norm(middles[:, :2], axis=1).max() < 0.9
-
-
-def test_refined_triangles_lie_on_the_curved_face():
-    x = np.array([[0, 0], [4, 0], [0, 4], [2, 0], [2, 2], [0, 2]], dtype=float)
-    face = np.column_stack([x, (x**2).sum(axis=1) / 8])
-    fine = refined(face[None], 0.6)
-    sides = np.linalg.norm((fine - np.roll(fine, 1, axis=1))[..., :2], axis=2)
-    assert sides.max() <= 0.6
-    np.testing.assert_allclose(fine[..., 2], (fine[..., :2] ** 2).sum(axis=-1) / 8, atol=1e-12)
-    flat = fine * [1.0, 1.0, 0.0]
-    assert area(flat) == pytest.approx(8.0)
-
-
 @pytest.mark.parametrize("half", [False, True])
 def test_faces_seen_from_outside_close_the_body(half):
     mesh = sample_block(half)
-    faces = outside_faces(mesh, np.zeros_like(mesh.points))
+    faces = deformed_faces(mesh, np.zeros_like(mesh.points), OUTSIDE)
     a, b, c = (faces[:, i] for i in range(3))
     volume = np.einsum("ij,ij->", np.cross(a, b), c) / 6
     assert volume == pytest.approx(SIZE[0] * SIZE[1] * SIZE[2] * (2 if half else 1))
@@ -238,7 +168,8 @@ def touching_states(gap):
 
 def test_touching_parts_are_seen_through_the_body():
     (red, wall), (pale, none) = (
-        picture_of_touching(touching_states(gap), (300.0, 300.0)) for gap in (0.05, 0.5)
+        picture_of_touching(touching_states(gap), (300.0, 300.0), touches=True)
+        for gap in (0.05, 0.5)
     )
     assert (wall, none) == (pytest.approx(2 * SIZE[0] * SIZE[1], rel=0.02), 0.0)
     reddish = [
@@ -250,16 +181,29 @@ def test_touching_parts_are_seen_through_the_body():
 
 
 def test_contact_shows_gaps_and_the_first_touch():
-    analyses = {"free": steps_of(), "held": steps_of()}
-    states = {"free": touching_states(0.5), "held": touching_states(0.05)}
+    analyses = {"free": steps_of(closing=0.0046), "held": steps_of()}
+    states = {"free": touching_states(0.07), "held": touching_states(0.05)}
     figure = contact_figure("d", analyses, states, 28.57)
     curve = figure.axes[0]
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
     assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
+    assert "walls touch below 0.06 mm" in lines
     np.testing.assert_array_equal(lines["held"], STEPS)
     assert {"free, 30 kPa: no contact", "held, 30 kPa: 200 mm² in contact"} <= set(labels(figure))
     low, high = curve.get_ylim()
     assert low < 0.0 < high
+
+
+@pytest.mark.parametrize(
+    ("closing", "gap", "told"),
+    [(0.0047, 0.05, "200 mm²"), (0.0047, 0.5, "less than 1 mm²"), (0.0046, 0.05, "no")],
+)
+def test_the_picture_says_of_contact_what_the_gap_of_its_state_says(closing, gap, told):
+    """Walls touch at 0.2 - 0.0047 · 30 = 0.059 mm, and not at 0.2 - 0.0046 · 30 = 0.062 mm."""
+    figure = contact_figure(
+        "d", {"free": steps_of(closing=closing)}, {"free": touching_states(gap)}, None
+    )
+    assert any(text.startswith(f"free, 30 kPa: {told}") for text in labels(figure))
 
 
 def test_walls_that_never_come_near_are_said_to():
@@ -375,45 +319,63 @@ def told(folder):
 
 
 def test_a_design_is_told_by_what_its_records_say(tmp_path):
-    touched = solved(tmp_path / "touched", first_contact_pressure_kPa=28.6)
+    touched = solved(tmp_path / "touched", first_contact_pressure_kPa=20.0)
     assert told(touched) == (
-        "In free actuation walls first touch at 28.6 kPa and penetrate by at most 0.010 mm, 5.0 %"
-        " of the gap between them. Blocked force (lower edge of the tip held): 0.690 N at 30 kPa."
+        "In free actuation walls first touch at 20 kPa, and overlap by at most 0.010 mm, 5.0 % of"
+        " the gap. Blocked force (lower edge of the tip held): 0.690 N at 30 kPa."
     )
-    write_record(solve_record("d", support="none", deepest_penetration_mm=0.0), touched / "solve")
-    assert told(touched) == (
-        "In free actuation walls first touch at 28.6 kPa and do not penetrate. No blocked force was"
-        " asked for."
-    )
-    assert told(solved(tmp_path / "clear", support="none")) == (
-        "No walls touched in free actuation. No blocked force was asked for."
-    )
+    for depth, words in [(0.0, ", and nowhere overlap."), (4e-4, "less than 0.001 mm, 0.2 % ")]:
+        figures = {"deepest_penetration_mm": depth, "penetration_share": 5.0 * depth}
+        write_record(solve_record("d", support="none", **figures), touched / "solve")
+        assert words in told(touched)
+        assert told(touched).endswith("No blocked force was asked for.")
     assert told(solved(tmp_path / "off", contact=False)).startswith(
         "Contact was off: walls that balloon may overlap."
     )
     assert told(path_only(tmp_path / "bare")) == ""
 
 
+@pytest.mark.parametrize(
+    ("closing", "words"),
+    [
+        (0.0046, "No walls touched in free actuation. "),
+        (0.0047, "In free actuation walls touch, and overlap by at most 0.010 mm, 5.0 % of the"),
+    ],
+)
+def test_walls_touched_if_the_gap_of_a_step_was_below_the_width_of_the_law(
+    tmp_path, closing, words
+):
+    assert told(solved(tmp_path / "d", closing=closing)).startswith(words)
+
+
 def test_limit_points_and_an_early_end_are_told(tmp_path):
-    folder = solved(tmp_path / "d")
+    folder = solved(tmp_path / "d", closing=0.003)
     ending = {"blocked_force": {**ENDED, "pressure_kPa": 20.0, "blocked_force_N": 0.5}}
-    limits = {"limit_points": 1, "volume_controlled_from_kPa": 19.5}
-    write_record(solve_record("d", **limits, **ending), folder / "solve")
+    limits = {"limit_points": 1, "volume_controlled_from_kPa": 16.5}
+    reached = {"largest_pressure_kPa": 17.2, "pressure_kPa": 8.1}
+    write_record(solve_record("d", **limits, **ending, **reached), folder / "solve")
     assert told(folder) == (
-        "No walls touched in free actuation. The pressure has 1 limit point. From 19.5 kPa on the"
-        " volume was controlled. Blocked force (on a rigid plate): 0.500 N at 20 kPa, where it"
-        " ended: not converged. The step fell."
+        "No walls touched in free actuation. The pressure has 1 limit point. From 16.5 kPa on the"
+        " volume was controlled. The pressure went through 17.2 kPa and ended at 8.1 kPa. Blocked"
+        " force (on a rigid plate): 0.500 N at 20 kPa, where it ended: not converged. The step"
+        " fell."
     )
+    write_record(solve_record("d", largest_pressure_kPa=17.2, pressure_kPa=17.1), folder / "solve")
+    assert "went through" not in told(folder)
 
 
 def test_the_page_says_of_contact_what_the_records_say(tmp_path):
     on = [solved(tmp_path / name) for name in ("a", "b")]
     off = [solved(tmp_path / name, contact=False) for name in ("c", "d")]
+    deeper = {"deepest_penetration_mm": 0.002, "penetration_share": 0.08}
+    write_record(solve_record("b", **deeper), on[1] / "solve")
     together = contact_note(read_entries([*on, off[0]]))
-    assert "by 5.0 % of the gap where it is deepest" in together
+    assert "touch where the gap between them is below 0.06 mm" in together
+    assert "acts at: by at most 0.002 mm, 8.0 % of the gap." in together
     assert together.endswith("Contact was off for 1 design: walls that balloon may overlap there.")
     assert "off" not in contact_note(read_entries(on))
-    write_record(solve_record("e", penetration_share=0.0), solved(tmp_path / "e") / "solve")
-    assert "by less than 0.1 % of the gap" in contact_note(read_entries([tmp_path / "e"]))
+    none = {"deepest_penetration_mm": 0.0, "penetration_share": 0.0}
+    write_record(solve_record("e", **none), solved(tmp_path / "e") / "solve")
+    assert contact_note(read_entries([tmp_path / "e"])).endswith("; walls nowhere overlap.")
     assert contact_note(read_entries(off)).startswith("Contact was off for all designs")
     assert contact_note([]) == ""

@@ -18,7 +18,7 @@ from pagd.errors import InputError
 from pagd.figures import viewer
 from pagd.figures.alternatives import ALTERNATIVES, alternative
 from pagd.figures.angles import draw_angles
-from pagd.figures.captions import OF_DESIGN, TOGETHER
+from pagd.figures.captions import TOGETHER, captions_of_design
 from pagd.figures.generative.captions import CAPTIONS
 from pagd.figures.groups import read_entries
 from pagd.figures.load import Path3D
@@ -208,12 +208,14 @@ def test_table_has_force_contact_and_penetration_with_their_units():
             **known,
             "deepest_penetration_mm": 0.0123,
         },
-        {"design_id": "b", "link": False, "status": "ok", "first_contact_pressure_kPa": None},
+        {"design_id": "b", "link": False, "status": "ok", "contact": True},
+        {"design_id": "c", "link": False, "status": "ok", "contact": False},
     ]
-    head, first, second = re.findall(r"<tr>.*?</tr>", results_table(rows), re.DOTALL)
+    head, first, second, third = re.findall(r"<tr>.*?</tr>", results_table(rows), re.DOTALL)
     assert cells(head)[2:] == ["blocked forceN", "first contactkPa", "penetrationmm"]
     assert cells(first)[2:] == ["1.234", "31.3", "0.012"]
     assert cells(second)[2:] == ["–", "–", "–"]
+    assert cells(third)[2:] == ["–", "off", "off"]
     assert 'data-order="31.26"' in first
 
 
@@ -236,6 +238,12 @@ def test_rows_are_those_of_the_summary_with_what_the_records_add(tmp_path):
     assert (drawn["size_mm"], drawn["novelty"], drawn["link"]) == (3.0, 1.5, True)
     assert drawn["origin"] == "published"
     assert "blocked_force_N" not in drawn
+    off = solved(tmp_path / "off", contact=False)
+    told = {
+        row["design_id"]: row.get("contact")
+        for row in rows_of(read_entries([folder, off]), summary)
+    }
+    assert told == {"other": None, "drawn": True, "off": False}
 
 
 # ---- comparison of generators ---------------------------------------------------------------
@@ -386,7 +394,7 @@ def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
     told = re.findall(r'<img[^>]* alt="([^"]*)"', whole_page.read_text(encoding="utf-8"))
     assert sorted(told) == sorted(html.escape(alternative(name)) for name in CAPTIONS)
     assert alternative("mesh", "bending") == f"{ALTERNATIVES['mesh']}: bending."
-    assert set(ALTERNATIVES) == {*CAPTIONS, *OF_DESIGN, *PICTURES_TOGETHER}
+    assert set(ALTERNATIVES) == {*CAPTIONS, *captions_of_design(), *PICTURES_TOGETHER}
     assert all(len(text.split()) > 5 for text in ALTERNATIVES.values())
 
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from pagd.figures.captions import OF_DESIGN
+from pagd.figures.captions import captions_of_design
 from pagd.figures.groups import Entry
 from pagd.figures.load import has_history, has_states, load_states
 from pagd.figures.page.markup import badge, escaped, folded
@@ -38,7 +38,8 @@ _CURVES = '<div class="curves"></div>'
 def card(entry: Entry, *, is_open: bool) -> str:
     """Return the card of a design as markup; the data of its shape are read when it is seen."""
     pixels = PIXELS if is_open else CARD_PIXELS
-    shown = pictures(entry.folder / "figures", OF_DESIGN, OF_DESIGN, pixels, entry.name)
+    captions = captions_of_design()
+    shown = pictures(entry.folder / "figures", captions, captions, pixels, entry.name)
     body = [
         _reason(entry),
         _mechanics(entry),
