@@ -24,6 +24,7 @@ __all__ = [
     "Path3D",
     "States",
     "Steps",
+    "contact_setting",
     "has_blocked_force",
     "has_blocked_states",
     "has_contact",
@@ -162,8 +163,15 @@ def has_blocked_states(folder: Path) -> bool:
 
 def has_contact(folder: Path) -> bool:
     """Tell whether walls could press each other apart in the analysis of a design."""
-    solved = load_records(folder).get("solve")
-    return bool(solved and solved.configuration.get("solve", {}).get("contact"))
+    return bool(contact_setting(folder))
+
+
+def contact_setting(folder: Path) -> bool | None:
+    """Return whether contact was on in the analysis of a design; None where no record tells."""
+    if not (folder / "solve" / RECORD_NAME).is_file():
+        return None
+    setting = read_record(folder / "solve").configuration.get("solve", {}).get("contact")
+    return setting if isinstance(setting, bool) else None
 
 
 def load_states(folder: Path) -> States:

@@ -47,6 +47,9 @@ _COLUMNS: Final = (
     _Column("material", "", "material", str),
 )
 
+# What is not known of a design without contact; that it was off is told instead.
+_OF_CONTACT: Final = ("first_contact_pressure_kPa", "deepest_penetration_mm")
+
 # More rows than these scroll in a box of their own.
 _MOST: Final = 20
 
@@ -82,12 +85,14 @@ def _row(row: Row, columns: Iterable[_Column]) -> str:
     name, status = escaped(row["design_id"]), str(row["status"])
     first = f'<a href="#design-{name}">{name}</a>' if row["link"] else name
     word = badge(status.replace("_", " "), ok=status == "ok")
-    cells = "".join(_cell(row.get(column.key), column) for column in columns)
+    cells = "".join(_cell(row, column) for column in columns)
     return f"<tr><th>{first}</th><td>{word}</td>{cells}</tr>"
 
 
-def _cell(value: Any, column: _Column) -> str:
+def _cell(row: Row, column: _Column) -> str:
+    value = row.get(column.key)
     if value is None:
-        return "<td>–</td>"
+        off = column.key in _OF_CONTACT and row.get("contact") is False
+        return "<td>off</td>" if off else "<td>–</td>"
     order = f' data-order="{value:.6g}"' if isinstance(value, (int, float)) else ""
     return f"<td{order}>{escaped(column.write(value))}</td>"
