@@ -15,6 +15,7 @@ from cases_contact import narrow_row, two_blocks
 from cases_inflation import moved_walls, walls_under_pressure
 from cases_material import balloon, homogeneous_states
 from cases_meshes import bending_meshes, mixed_meshes, twisting_meshes
+from cases_nested import nested_meshes
 from cases_paper import circle, elastica
 from cases_solid import block_bending, convergence, cook_membrane, patch_test, rigid_rotation
 from cases_supports import block_on_plane, own_weight
@@ -52,6 +53,7 @@ CASES: tuple[Case, ...] = (
     Case(rows=same_element, group=Group.programs, program="ccx", costly=True),
     Case(rows=bending_on_finer_meshes, group=Group.programs, program="ccx", costly=True),
     Case(rows=twisting_on_finer_meshes, group=Group.programs, program="ccx", costly=True),
+    Case(rows=nested_meshes, group=Group.meshes, costly=True),
     Case(rows=bending_meshes, group=Group.meshes, costly=True),
     Case(rows=twisting_meshes, group=Group.meshes, costly=True),
     Case(rows=mixed_meshes, group=Group.meshes, costly=True),
