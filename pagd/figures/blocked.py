@@ -108,12 +108,15 @@ def blocked_force_figure(title: str, analysis: Blocked, pair: Pair | None = None
 def _draw_curve(axes: Axes, analysis: Blocked) -> None:
     pressure, force = analysis.steps.forces
     axes.axhline(0.0, color=INK, linewidth=0.9)
-    axes.plot(pressure, force, "o-", color=BLOCKED, linewidth=1.4, markersize=4.5)
-    end = f"{number(float(force[-1]), 3)} N at {kilopascals(pressure[-1])}"
+    axes.plot(pressure, force, ".-", color=BLOCKED, linewidth=1.4, markersize=3.0)
+    pressures, forces = analysis.steps.recorded_forces
+    axes.plot(pressures, forces, "o", color=BLOCKED, markersize=5.0)
+    last = float(pressures[-1]), float(forces[-1])
+    end = f"{number(last[1], 3)} N at {kilopascals(last[0])}"
     early = "" if analysis.status == "ok" else f"\nended there: {analysis.status}"
     axes.annotate(
         end + early,
-        (pressure[-1], force[-1]),
+        last,
         xytext=(0.04, 0.96),
         textcoords="axes fraction",
         va="top",

@@ -30,8 +30,8 @@ _OF_DESIGN: Final[Mapping[str, str]] = {
     " than {touching} mm to another wall, where the contact law begins to push, both sides"
     " counted.",
     "blocked_force": "Left: the force of the actuator on what holds its tip from the start,"
-    " positive downwards; dots are recorded states. Right: the last shape so held, beside the free"
-    " one at the nearest recorded pressure, undeformed in grey.",
+    " positive downwards; large dots are recorded states. Right: the last shape so held, beside"
+    " the free one at the nearest recorded pressure, undeformed in grey.",
     "pressure_volume": "Pressure over the volume of the cavity in free actuation. The shaded area"
     " is the work of the pressure. Where the pressure can rise no further, at a limit point, the"
     " volume is raised instead and the pressure falls.",

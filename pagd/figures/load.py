@@ -85,7 +85,7 @@ class Steps:
     pressure_kPa, cavity_volume_mm3, work_mJ: (k,) of the whole actuator.
     recorded: (k,) whether the state was kept.
     smallest_gap_mm: (k,) between walls, negative for a penetration; NaN where none are near.
-    blocked_force_N: (k,) on the support, NaN but in recorded states; None of a free actuation.
+    blocked_force_N: (k,) on the support, NaN where it is not known; None of a free actuation.
     """
 
     pressure_kPa: FloatArray
@@ -97,10 +97,18 @@ class Steps:
 
     @property
     def forces(self) -> tuple[FloatArray, FloatArray]:
-        """Pressures and blocked forces (f,) of the states that have one."""
+        """Pressures and blocked forces (f,) of the steps that have one."""
+        return self._forces(np.ones_like(self.recorded))
+
+    @property
+    def recorded_forces(self) -> tuple[FloatArray, FloatArray]:
+        """Pressures and blocked forces (f,) of the recorded states that have one."""
+        return self._forces(self.recorded)
+
+    def _forces(self, wanted: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
         if self.blocked_force_N is None:
             return np.zeros(0), np.zeros(0)
-        known = np.isfinite(self.blocked_force_N)
+        known = wanted & np.isfinite(self.blocked_force_N)
         return self.pressure_kPa[known], self.blocked_force_N[known]
 
 

@@ -17,6 +17,8 @@ __all__ = ["Pieces"]
 
 # Barycentric coordinates of the middles of the sides: (0,1) (1,2) (2,0).
 _MIDDLES = np.array([[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]])
+# By so much longer sides are tried where pieces would be too many.
+_LONGER = 1.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,18 +46,22 @@ class Pieces:
     def divided(self, side_mm: float, most: int) -> Pieces:
         """Return pieces whose sides are no longer than `side_mm`.
 
-        Where these would be more than about `most`, the sides are longer: each of the t pieces is
-        divided into the square of its longest side's parts, rounded up, and the sum of those
-        squares is at most (√most + √t)².
+        Where these would be more than `most`, their sides are longer; of more pieces than that
+        none is divided.
         """
-        longest = self.longest_sides
-        side = max(side_mm, float(np.sqrt((longest**2).sum() / most)))
-        parts = np.maximum(np.ceil(longest / side), 1.0).astype(np.int64)
+        parts = self._parts(side_mm)
+        while (parts**2).sum() > max(most, len(parts)):
+            side_mm *= _LONGER
+            parts = self._parts(side_mm)
         groups = [self._cut(np.flatnonzero(parts == count), int(count)) for count in set(parts)]
         if not groups:
             return self
         face, places = (np.concatenate(both) for both in zip(*groups, strict=True))
         return Pieces(self.faces, face, places)
+
+    def _parts(self, side_mm: float) -> IntArray:
+        """Return into how many parts (t,) the longest side of each piece is to be divided."""
+        return np.maximum(np.ceil(self.longest_sides / side_mm), 1.0).astype(np.int64)
 
     def _cut(self, which: IntArray, parts: int) -> tuple[IntArray, FloatArray]:
         """Return faces and places of the pieces that some consist of, `parts` along each side."""

@@ -29,7 +29,10 @@ __all__ = ["deformed_faces", "touching_mm", "touching_triangles"]
 # Sides of the pieces that the search begins with, and of those that are marked.
 _COARSE_MM, _FINE_MM = 5.0, 0.5
 # Where pieces of these sides would be more than so many, as where walls balloon, they are larger.
-_MOST: Final = 40_000
+_MOST_COARSE: Final = 25_000
+_MOST_FINE: Final = 60_000
+# So many pairs of pieces are looked at in one go: of crumpled balloons there are many millions.
+_PAIRS: Final = 200_000
 # Product of the normals of two pieces that may face each other, at most: coarse ones turn within;
 # of the fine ones the two sides of a slanted wall's sharp edge must not count.
 _TURNED, _OPPOSITE = -0.1, -0.8
@@ -73,9 +76,9 @@ def touching_triangles(faces: FloatArray, distance_mm: float | None = None) -> F
     """
     law = _law()
     distance = law.width if distance_mm is None else distance_mm
-    coarse = Pieces.of(faces).divided(_COARSE_MM, _MOST)
+    coarse = Pieces.of(faces).divided(_COARSE_MM, _MOST_COARSE)
     near = np.unique(_facing(coarse, distance, _TURNED))
-    fine = coarse.at(near).divided(_FINE_MM, _MOST)
+    fine = coarse.at(near).divided(_FINE_MM, _MOST_FINE)
     one, other = _nearest(fine, _facing(fine, distance, _OPPOSITE))
     gap = _gaps(fine, one, other)
     return fine.corners[one[(gap < distance) & (gap > -law.deepest)]]
@@ -97,16 +100,21 @@ def _facing(pieces: Pieces, distance_mm: float, opposite: float) -> IntArray:
     # No point of a triangle is farther from its middle than two thirds of its longest side.
     reach = distance_mm + 4.0 / 3.0 * float(pieces.longest_sides.max())
     pairs = KDTree(pieces.middles).query_pairs(reach, output_type="ndarray")
+    parts = np.array_split(pairs, len(pairs) // _PAIRS + 1)
+    return np.vstack([_kept(pieces, part, distance_mm, opposite) for part in parts])
+
+
+def _kept(pieces: Pieces, pairs: IntArray, distance_mm: float, opposite: float) -> IntArray:
+    """Return the pairs that have opposite normals and are not far apart along either."""
     normals = pieces.normals
-    turned = _products(*(normals[side] for side in pairs.T)) < opposite
-    pairs = pairs[turned]
-    hulls = pieces.hulls
+    pairs = pairs[_products(*(normals[side] for side in pairs.T)) < opposite]
     for side in (0, 1):
-        pairs = pairs[_overlap(hulls, normals[pairs[:, side]], pairs, distance_mm)]
+        axes = normals[pairs[:, side]]
+        pairs = pairs[_are_near(pieces.hulls, axes, pairs, distance_mm)]
     return np.asarray(pairs, dtype=np.int64)
 
 
-def _overlap(
+def _are_near(
     hulls: FloatArray, axes: FloatArray, pairs: IntArray, distance_mm: float
 ) -> NDArray[np.bool_]:
     """Tell of which pairs the hulls (t, 6, 3), along an axis (p, 3) each, are not far apart."""

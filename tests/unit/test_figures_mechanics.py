@@ -223,8 +223,12 @@ def test_the_force_is_told_with_what_held_the_tip_and_how_it_ended():
     assert {"0.690 N at 30 kPa", "d: blocked force, lower edge of the tip held"} <= set(
         labels(whole)
     )
-    (curve,) = whole.axes[0].lines[1:]
+    curve, dots = whole.axes[0].lines[1:]
     np.testing.assert_allclose(curve.get_xydata(), KNOWN)
+    np.testing.assert_allclose(dots.get_xydata(), KNOWN)
+    every = steps_of(force=0.1 * STEPS)
+    curve, dots = blocked_force_figure("d", Blocked.of(every, {})).axes[0].lines[1:]
+    assert (len(curve.get_xdata()), len(dots.get_xdata())) == (5, 4)
     early = labels(blocked_force_figure("d", Blocked.of(held, {"blocked_force": ENDED})))
     assert "0.690 N at 30 kPa\nended there: not converged" in early
     assert "d: blocked force, on a rigid plate" in early

@@ -29,7 +29,7 @@ function stepLine(name, steps, { x, y, about }) {
   return {
     type: "scatter",
     mode: "lines+markers",
-    connectgaps: true, // the force is known of recorded states alone
+    connectgaps: true, // not every step need know its force
     name: analysisNames[name],
     x: steps[x[0]],
     y: steps[y[0]],
