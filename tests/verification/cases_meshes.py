@@ -18,8 +18,7 @@ from pagd.mesh.types import Mesh
 PRESSURE = 0.01  # MPa
 #: Meshes in the order of a study: drawn by gmsh, or one of these with every edge halved.
 LABELS = ("5 mm", "5 mm halved", "4 mm", "3 mm", "3 mm halved")
-#: Largest errors in percent, on the meshes in this order: a third above what was found. Meshes of
-#: the mixed design may have the errors of those of the twisting one.
+#: Largest errors in percent, on the meshes of the study in order: a third above what was found.
 TOLERANCES = {
     "bending": {
         "tip x": (3.5, 1.5, 3.0, 2.0, 1.0),
@@ -35,8 +34,15 @@ TOLERANCES = {
         "twist": (17.0, 8.5, 18.5, 17.0, 8.0),
         "blocked force": (10.0, 6.0, 12.0, 13.5, 6.5),
     },
+    "mixed": {
+        "tip x": (2.5, 1.5, 3.5),
+        "tip y": (2.0, 1.0, 2.0),
+        "tip z": (2.5, 1.0, 3.0),
+        "bending": (4.5, 2.5, 6.0),
+        "twist": (3.0, 1.5, 4.0),
+        "blocked force": (2.5, 1.5, 2.5),
+    },
 }
-TOLERANCES["mixed"] = TOLERANCES["twisting"]
 #: Limits from two meshes drawn anew and their halves; 2.6 % was the most found.
 SAME_LIMIT = 0.035
 
@@ -79,7 +85,7 @@ def twisting_meshes() -> list[Figure]:
 def mixed_meshes() -> list[Figure]:
     """The mixed design at 10 kPa, with limits from 5 mm and its halves, which cost less.
 
-    Its errors may be those of the twisting design.
+    At the default 3 mm its angles are 3 to 4 % and its blocked force 2 % short of these limits.
     """
     return rows("mixed", study("mixed", ("5 mm", "5 mm halved", "3 mm")))
 
@@ -178,7 +184,7 @@ def rows(name: str, series: list[Found]) -> list[Figure]:
     others = _limits(known, "5 mm") if source != "5 mm" else {}
     figures: list[Figure] = []
     for result, tolerances in TOLERANCES[name].items():
-        allowed = dict(zip(LABELS, tolerances, strict=True))
+        allowed = dict(zip(known, tolerances, strict=True))
         figures += [figure(m, result, known[m][result], allowed[m] / 100) for m in known]
         if others:
             label = "limit from 5 mm and its halves"
