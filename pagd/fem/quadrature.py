@@ -47,3 +47,17 @@ def triangle(degree: int) -> Quadrature:
     points = _orbit(1 - 2 * inner, inner, inner) + _orbit(1 - 2 * outer, outer, outer)
     weights = np.repeat([0.223381589678011, 0.109951743655322], 3)
     return Quadrature(np.array(points), weights / weights.sum())
+
+
+def divided(rule: Quadrature, parts: int) -> Quadrature:
+    """The rule of a triangle on each of parts² equal triangles that it is divided into."""
+    points, weights = [], []
+    for i in range(parts):
+        for j in range(parts - i):
+            upright = [(i, j), (i + 1, j), (i, j + 1)]
+            upside_down = [(i + 1, j + 1), (i, j + 1), (i + 1, j)]
+            for corners in [upright, upside_down][: 1 if i + j == parts - 1 else 2]:
+                places = rule.points @ np.array(corners) / parts
+                points.append(np.column_stack([1 - places.sum(axis=1), places]))
+                weights.append(rule.weights / parts**2)
+    return Quadrature(np.vstack(points), np.concatenate(weights))

@@ -8,7 +8,7 @@ from math import factorial, prod
 import numpy as np
 import pytest
 
-from pagd.fem.quadrature import Quadrature, tetrahedron, triangle
+from pagd.fem.quadrature import Quadrature, divided, tetrahedron, triangle
 
 RULES = [(tetrahedron(), 2), (triangle(2), 2), (triangle(4), 4)]
 
@@ -44,6 +44,15 @@ def test_points_inside_and_weights_positive(rule: Quadrature, degree: int) -> No
     assert (rule.points > 0).all()
     assert (rule.weights > 0).all()
     assert rule.weights.sum() == pytest.approx(1.0, abs=1e-14)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3])
+def test_a_divided_triangle_has_the_degree_and_a_smaller_error(parts: int) -> None:
+    rule = divided(triangle(2), parts)
+    assert len(rule.weights) == 3 * parts**2
+    test_points_inside_and_weights_positive(rule, 2)
+    test_exact_up_to_the_degree(rule, 2)
+    assert max(errors(rule, 3)) < 1.01 * max(errors(triangle(2), 3)) / parts**3
 
 
 def test_other_degrees_are_refused() -> None:
