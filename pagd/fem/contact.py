@@ -57,11 +57,11 @@ class ContactLaw:
         mm: with all the pressure of a first guess that is too deep the tangent is indefinite.
     """
 
-    stiffness: float = 10.0
-    width: float = 0.06
+    stiffness: float = 20.0
+    width: float = 0.04
     reach: float = 0.5
     deepest: float = 0.75
-    steady: float = 0.03
+    steady: float = 0.02
 
 
 class FaceContact:

@@ -48,7 +48,7 @@ def test_walls_touch_where_the_contact_law_begins_to_push():
 
 
 @pytest.mark.parametrize(
-    ("gap", "expected"), [(0.05, 24.0), (0.0, 24.0), (-0.05, 24.0), (0.07, 0.0), (1.0, 0.0)]
+    ("gap", "expected"), [(0.03, 24.0), (0.0, 24.0), (-0.03, 24.0), (0.05, 0.0), (1.0, 0.0)]
 )
 def test_touching_faces_are_the_two_between(gap, expected):
     triangles = touching_triangles(two_boxes(gap))
@@ -90,9 +90,9 @@ def test_large_faces_touch_where_small_ones_do(overlap):
     lower, upper = balloon(radius, -2 * radius, 14), balloon(radius, gap, 14)
     faces = np.concatenate([lower, upper])
     assert 40.0 < Pieces.of(faces).longest_sides.max() < 45.0
-    found = touching_triangles(faces)
-    # Two spheres part by r² / R: nearer than the width of the law within r² = R (width - gap).
-    reach = radius * (touching_mm() - gap)
+    found = touching_triangles(faces, 0.06)
+    # Two spheres part by r² / R: nearer than 0.06 mm within r² = R (0.06 - gap).
+    reach = radius * (0.06 - gap)
     assert area(found) == pytest.approx(2 * np.pi * reach, rel=0.15)
     assert np.linalg.norm(found.mean(axis=1)[:, :2], axis=1).max() < 1.1 * np.sqrt(reach)
 
