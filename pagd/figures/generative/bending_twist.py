@@ -8,13 +8,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw, load_performance
-from pagd.figures.generative.simulated import (
-    draw_simulated,
-    legend_of_simulated,
-    name_known,
-    with_numbers,
-)
-from pagd.figures.style import FAINT, new_figure, save
+from pagd.figures.generative.simulated import figure_of_simulated, with_numbers
+from pagd.figures.style import save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,17 +44,10 @@ def bending_twist_figure(performance: pd.DataFrame) -> Figure:
     found = with_numbers(performance, "bending_deg", "twist_deg")
     if found.empty:
         raise NothingToDraw("No simulated design came as far as a bending and a twist.")
-    figure = new_figure(8.6, 6.4)
-    axes = figure.add_subplot()
-    for line in (axes.axhline, axes.axvline):
-        line(0.0, color=FAINT, linewidth=0.8, zorder=1)
-    draw_simulated(axes, found, "bending_deg", "twist_deg")
-    axes.margins(0.08)
-    axes.set(xlabel="bending of the tip, degrees", ylabel="twist of the tip, degrees")
-    axes.set_title(f"bending and twist of {_count(performance, found)}")
-    legend_of_simulated(figure, found)
-    name_known(axes, found, "bending_deg", "twist_deg")
-    return figure
+    columns = ("bending_deg", "twist_deg")
+    labels = ("bending of the tip, degrees", "twist of the tip, degrees")
+    title = f"bending and twist of {_count(performance, found)}"
+    return figure_of_simulated(found, columns, labels, title)
 
 
 def _count(performance: pd.DataFrame, found: pd.DataFrame) -> str:

@@ -8,13 +8,8 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw, load_performance
-from pagd.figures.generative.simulated import (
-    draw_simulated,
-    legend_of_simulated,
-    name_known,
-    with_numbers,
-)
-from pagd.figures.style import FAINT, new_figure, save
+from pagd.figures.generative.simulated import figure_of_simulated, with_numbers
+from pagd.figures.style import save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,15 +44,8 @@ def force_bending_figure(performance: pd.DataFrame) -> Figure:
     found = with_numbers(performance, "bending_deg", "blocked_force_N")
     if found.empty:
         raise NothingToDraw("No simulated design has both a bending and a blocked force.")
-    figure = new_figure(8.6, 6.4)
-    axes = figure.add_subplot()
-    for line in (axes.axhline, axes.axvline):
-        line(0.0, color=FAINT, linewidth=0.8, zorder=1)
-    draw_simulated(axes, found, "bending_deg", "blocked_force_N")
-    axes.margins(0.08)
-    axes.set(xlabel="bending of the free tip, degrees", ylabel="blocked force, N")
     plural = "s" if len(found) != 1 else ""
-    axes.set_title(f"blocked force and bending of {len(found):,} simulated design{plural}")
-    legend_of_simulated(figure, found)
-    name_known(axes, found, "bending_deg", "blocked_force_N")
-    return figure
+    columns = ("bending_deg", "blocked_force_N")
+    labels = ("bending of the free tip, degrees", "blocked force, N")
+    title = f"blocked force and bending of {len(found):,} simulated design{plural}"
+    return figure_of_simulated(found, columns, labels, title)

@@ -13,13 +13,19 @@ from matplotlib.lines import Line2D
 
 from pagd.figures.generative.labels import label_points
 from pagd.figures.generative.plane import modes_of
-from pagd.figures.style import FAINT, INK, mode_look
+from pagd.figures.style import FAINT, INK, mode_look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["draw_simulated", "legend_of_simulated", "name_known", "with_numbers"]
+__all__ = [
+    "draw_simulated",
+    "figure_of_simulated",
+    "legend_of_simulated",
+    "name_known",
+    "with_numbers",
+]
 
 _KNOWN: Final = ("table2", "published")
 _MOST_NAMES: Final = 30
@@ -105,3 +111,30 @@ def _handle(marker: str, label: str, *, filled: bool) -> Line2D:
         linestyle="",
         label=label,
     )
+
+
+def figure_of_simulated(
+    found: pd.DataFrame, columns: tuple[str, str], labels: tuple[str, str], title: str
+) -> Figure:
+    """Return the picture of one column over another: a point a design, by mode, known ones named.
+
+    Parameters
+    ----------
+    found
+        Simulated designs that have numbers in both ``columns``, across and upwards.
+    columns, labels
+        What is drawn, and the labels of the axes.
+    title
+        Title of the picture.
+    """
+    figure = new_figure(8.6, 6.4)
+    axes = figure.add_subplot()
+    for line in (axes.axhline, axes.axvline):
+        line(0.0, color=FAINT, linewidth=0.8, zorder=1)
+    draw_simulated(axes, found, *columns)
+    axes.margins(0.08)
+    axes.set(xlabel=labels[0], ylabel=labels[1])
+    axes.set_title(title)
+    legend_of_simulated(figure, found)
+    name_known(axes, found, *columns)
+    return figure
