@@ -18,6 +18,7 @@ class Status(StrEnum):
     overstretched = "overstretched"
     self_collision = "self_collision"
     bending_limit = "bending_limit"
+    buckled = "buckled"
 
 
 class PagdError(Exception):

@@ -123,6 +123,11 @@ def _ending(
     path = followed.path
     if recorder.ending:
         return recorder.ending
+    if path.failure and path.is_unstable:
+        return Status.buckled, (
+            f"At {pressure_kPa.max():.4g} kPa the equilibrium loses its stability: the actuator "
+            f"buckles; from {path.load / _KPA:.4g} kPa on no step of the volume led further."
+        )
     if path.failure:
         means = "no step of the pressure"
         if followed.volume_controlled_from is not None:

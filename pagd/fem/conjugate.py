@@ -12,7 +12,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from pagd.fem.assembly import State
-from pagd.fem.continuation import LoadPath, Observer, Step, StepControl, interpolate
+from pagd.fem.continuation import (
+    UNSTABLE,
+    LoadPath,
+    Observer,
+    Step,
+    StepControl,
+    failed,
+    interpolate,
+    longer,
+)
 from pagd.fem.newton import Newton, NewtonResult
 from pagd.fem.term import LoadTerm
 
@@ -62,7 +71,8 @@ class ConjugatePath:
         """Raise the conjugate from the last of the ``known`` states, two at least.
 
         ``loads`` are those still wanted; ``path`` is what there is of the path. Ends where the
-        last load is reached, or ``observe`` stops it, or no step converges.
+        last load is reached, or ``observe`` stops it, or no step converges to an equilibrium that
+        is stable while the conjugate is held.
         """
         control, wanted, path = self._control, list(loads), replace(path, failure="")
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
@@ -75,25 +85,26 @@ class ConjugatePath:
             result = self._try(points, points[-1].conjugate + step)
             correction = result.corrections[0] if result.corrections else math.inf
             path = replace(path, iterations=path.iterations + result.iterations)
-            if result.state is None:
+            if result.state is None or result.is_unstable:
                 step = control.retry_step(taken, correction, count)
-                path = replace(path, rejected=path.rejected + 1)
+                path = failed(path, result)
                 if step < self._smallest * first:
-                    return replace(path, failure=result.reason)
+                    return replace(path, failure=result.reason or UNSTABLE)
                 continue
             point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])
             while wanted and points[-1].state.load < wanted[0] <= point.state.load:
-                landed = self._land(points[-1], point, wanted[0])
-                if landed is None:
+                iterations, landed = self._land(points[-1], point, wanted[0])
+                path = replace(path, iterations=path.iterations + iterations)
+                if landed.state is None:
                     return replace(path, failure=f"no state found at the wanted {wanted[0]:g}")
-                path = _longer(path, landed)
+                path = longer(path, landed.state.load, landed)
                 del wanted[0]
-                stop = observe(landed)
+                stop = observe(Step(landed.state, iterations, True))
                 if stop or not wanted:
                     return replace(path, stopped=stop or "")
             points = [*points, point][-control.order - 1 :]
             reached = Step(result.state, result.iterations, False)
-            path = replace(path, load=result.state.load, steps=path.steps + 1)
+            path = longer(path, result.state.load, result)
             stop = observe(reached)
             if stop:
                 return replace(path, stopped=stop)
@@ -105,8 +116,8 @@ class ConjugatePath:
         guess = interpolate([point.state for point in points], places, conjugate)
         return self._newton.solve(guess, conjugate, points[-1].state)
 
-    def _land(self, before: _Point, after: _Point, load: float) -> Step | None:
-        """The state at a load between those of two points; none where no try converges."""
+    def _land(self, before: _Point, after: _Point, load: float) -> tuple[int, NewtonResult]:
+        """Iterations, and what they led to, at a load between those of two points."""
         iterations = 0
         for _ in range(_LANDINGS):
             ends = [before.state, after.state]
@@ -114,20 +125,11 @@ class ConjugatePath:
             result = self._newton.solve(guess)
             iterations += result.iterations
             if result.state is not None:
-                return Step(result.state, iterations, True)
+                break
             middle = self._try([before, after], (before.conjugate + after.conjugate) / 2)
             iterations += middle.iterations
             if middle.state is None:
-                return None
+                break
             point = _Point(middle.state, (before.conjugate + after.conjugate) / 2)
             before, after = (point, after) if point.state.load < load else (before, point)
-        return None
-
-
-def _longer(path: LoadPath, step: Step) -> LoadPath:
-    return replace(
-        path,
-        load=step.state.load,
-        steps=path.steps + 1,
-        iterations=path.iterations + step.iterations,
-    )
+        return iterations, result

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import State
-from pagd.fem.newton import Newton
+from pagd.fem.newton import Newton, NewtonResult
 
 FloatArray = NDArray[np.float64]
 
@@ -81,7 +81,8 @@ class LoadPath:
     """How following the path ended.
 
     ``stopped`` is what the observer gave as its reason, ``failure`` why no further
-    step converged; both are empty where the last load was reached.
+    step converged; both are empty where the last load was reached. ``is_unstable`` tells that
+    the equilibrium of the last step, or of a try beyond it, is unstable under the load.
     """
 
     load: float
@@ -90,7 +91,11 @@ class LoadPath:
     rejected: int
     stopped: str = ""
     failure: str = ""
+    is_unstable: bool = False
 
+
+#: Why a path ends where Newton's method converged, but on states that nothing rests in.
+UNSTABLE = "the equilibrium is unstable"
 
 Observer = Callable[[Step], str | None]
 Boundary = Callable[[float, FloatArray], None]
@@ -114,6 +119,18 @@ def interpolate(states: Sequence[State], places: Sequence[float], place: float) 
         for k in range(len(states[0].internal))
     )
     return State(load, unknowns, internal)
+
+
+def failed(path: LoadPath, result: NewtonResult) -> LoadPath:
+    """A path after one more try that led nowhere."""
+    unstable = path.is_unstable or result.unstable_directions > 0
+    return replace(path, rejected=path.rejected + 1, is_unstable=unstable)
+
+
+def longer(path: LoadPath, load: float, result: NewtonResult) -> LoadPath:
+    """A path after one more step."""
+    unstable = result.unstable_directions > 0
+    return replace(path, load=load, steps=path.steps + 1, is_unstable=unstable)
 
 
 class Continuation:
@@ -144,7 +161,7 @@ class Continuation:
         """Raise the load through each of ``loads``, which must increase.
 
         From ``start``, an equilibrium, or from rest. ``observe`` gets every converged step and may
-        return a reason to stop.
+        return a reason to stop. A step to an unstable equilibrium counts as one that failed.
         """
         control = self._control
         path = LoadPath(0.0, 0, 0, 0)
@@ -159,14 +176,14 @@ class Continuation:
                 result = self._newton.solve(self._guess(states, load), before=before)
                 correction = result.corrections[0] if result.corrections else math.inf
                 path = replace(path, iterations=path.iterations + result.iterations)
-                if result.state is None:
+                if result.state is None or result.is_unstable:
                     step, rejections = control.retry_step(taken, correction, known), rejections + 1
-                    path = replace(path, rejected=path.rejected + 1)
+                    path = failed(path, result)
                     if step < control.smallest or rejections > control.patience:
-                        return replace(path, failure=result.reason)
+                        return replace(path, failure=result.reason or UNSTABLE)
                     continue
                 states = self.states = [*states, result.state][-control.order - 1 :]
-                path, rejections = replace(path, load=load, steps=path.steps + 1), 0
+                path, rejections = longer(path, load, result), 0
                 stop = observe(Step(result.state, result.iterations, load == target))
                 if stop:
                     return replace(path, stopped=stop)

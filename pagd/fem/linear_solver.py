@@ -29,6 +29,14 @@ class LinearSolver(Protocol):
 
     name: str
 
+    @property
+    def negative_pivots(self) -> int | None:
+        """Negative pivots of the matrix factorised last; none where the solver cannot tell.
+
+        As many as the matrix has negative eigenvalues (Sylvester's law of inertia).
+        """
+        ...
+
     def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
         """Take a pattern: row starts (m + 1,) and sorted columns (z,), the diagonal included."""
         ...
@@ -80,7 +88,7 @@ class PardisoSolver:
         34: 1,  # zero-based indices
     }
     _SYMMETRIC_INDEFINITE = -2
-    _PERTURBED_PIVOTS = 13  # their number, an output
+    _PERTURBED_PIVOTS, _NEGATIVE_PIVOTS = 13, 22  # their numbers, outputs
     _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
 
     def __init__(self) -> None:
@@ -145,6 +153,11 @@ class PardisoSolver:
             self._check(self._values, right, result)
         return result
 
+    @property
+    def negative_pivots(self) -> int | None:
+        """Number of negative eigenvalues of the matrix factorised last."""
+        return int(self._parameters[self._NEGATIVE_PIVOTS])
+
     def _check(self, values: FloatArray, right: FloatArray, result: FloatArray) -> None:
         """Pardiso replaces vanishing pivots and goes on: see whether the result is a solution."""
         from scipy.sparse import csr_array
@@ -167,6 +180,8 @@ class SuperLUSolver:
     """SciPy's SuperLU; works everywhere, several times slower."""
 
     name = "superlu"
+    # Rows are exchanged without the columns: the pivots have other signs than the eigenvalues.
+    negative_pivots: int | None = None
 
     def __init__(self) -> None:
         self._starts = self._columns = np.zeros(0, np.int32)

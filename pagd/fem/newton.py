@@ -7,6 +7,10 @@ pressure, the load is an unknown too. With b = ∂c/∂u, and r growing by −b 
 
 which takes one more solution with the same factors, K w = b. K is singular at a limit point of the
 load, and only there; the path passes through it from step to step.
+
+An equilibrium is stable where the energy grows in all directions: where K has as many negative
+eigenvalues as there are multipliers (the pressures of a mixed element). With c held, the
+directions are those with b · δu = 0; K may then have one more, exactly if b · K⁻¹ b < 0.
 """
 
 from __future__ import annotations
@@ -22,6 +26,9 @@ from pagd.fem.linear_solver import LinearSolver, SingularMatrixError
 from pagd.fem.term import LoadTerm
 
 FloatArray = NDArray[np.float64]
+
+# So many corrections on end, after as many, show whether an iteration comes nearer.
+_TO_AND_FRO = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +51,8 @@ class NewtonSettings:
         A first guess that is either is taken half-way back to the state before, so many times.
     growth
         A correction larger than the one before it, after the second, ends the try; with a number,
-        one larger than so many times the larger of the first two.
+        one larger than so many times the larger of the first two, and so do several on end none
+        of which is smaller than any before: the iteration goes to and fro.
     """
 
     tolerance: float = 1e-2
@@ -57,12 +65,18 @@ class NewtonSettings:
 
 @dataclass(frozen=True, slots=True)
 class NewtonResult:
-    """A converged state, or none and the reason; the number of systems solved."""
+    """A converged state, or none and the reason; the number of systems solved.
+
+    Of a converged state, ``unstable_directions`` is the number of those in which the energy falls
+    under the load, and ``is_unstable`` tells whether it does in any that what is held allows.
+    """
 
     state: State | None
     iterations: int
     corrections: tuple[float, ...]
     reason: str = ""
+    unstable_directions: int = 0
+    is_unstable: bool = False
 
 
 class Newton:
@@ -75,7 +89,8 @@ class Newton:
     solver
         The linear solver.
     displacements
-        The first so many unknowns are displacements, in mm; the tolerance is theirs.
+        The first so many unknowns are displacements, in mm; the tolerance is theirs. All others
+        are multipliers.
     settings
         Tolerance and limits.
     load_term
@@ -95,6 +110,8 @@ class Newton:
         self.solver = solver
         self.settings = settings or NewtonSettings()
         self._displacements = displacements
+        self._multipliers = int((assembly.free >= displacements).sum())
+        self._falling = False
         self._analyse()
 
     def _analyse(self) -> None:
@@ -125,7 +142,11 @@ class Newton:
                 break
             if size < settings.tolerance:
                 final = _loaded(self.assembly.advance(state, correction), load)
-                return NewtonResult(final, len(corrections), tuple(corrections))
+                unstable = self._unstable_directions()
+                stopped = int(conjugate is not None and self._falling)
+                return NewtonResult(
+                    final, len(corrections), tuple(corrections), "", unstable, unstable > stopped
+                )
             step = self._admissible_step(state, correction, load)
             if step is None:
                 return NewtonResult(
@@ -165,8 +186,15 @@ class Newton:
         value, slopes = self.load_term.conjugate(state.unknowns)
         by_load = np.zeros(self.assembly.size)
         by_load[free] = self.solver.solve_again(slopes[free])
-        load = float((conjugate - value - slopes @ correction) / (slopes @ by_load))
+        growth = float(slopes @ by_load)
+        self._falling = growth < 0
+        load = (conjugate - value - float(slopes @ correction)) / growth
         return correction + load * by_load, load
+
+    def _unstable_directions(self) -> int:
+        """Directions in which the energy falls from the state of the last correction."""
+        negative = self.solver.negative_pivots
+        return 0 if negative is None else negative - self._multipliers
 
     def _admissible_step(
         self, state: State, correction: FloatArray, load: float
@@ -204,4 +232,7 @@ def _diverges(corrections: Sequence[float], settings: NewtonSettings) -> bool:
         return False
     if settings.growth is None:
         return corrections[-1] > corrections[-2]
-    return corrections[-1] > settings.growth * max(corrections[:2])
+    if corrections[-1] > settings.growth * max(corrections[:2]):
+        return True
+    early, late = corrections[:-_TO_AND_FRO], corrections[-_TO_AND_FRO:]
+    return len(early) >= _TO_AND_FRO and min(late) >= min(early)

@@ -96,6 +96,7 @@ STATUS_COLOURS: Final = {
     "bending_limit": "#56b4e9",
     "self_collision": "#e69f00",
     "overstretched": "#d55e00",
+    "buckled": "#cc79a7",
     "not_converged": "#8c6d31",
     "mesh_failed": "#6b4c9a",
     "invalid_geometry": "#1d2733",

@@ -1,8 +1,11 @@
-"""Past limit points of the load, on a spring whose path is known: f(u) = u³ − 3u² + 2.5u."""
+"""Past limit points of the load, on a spring whose path is known: f(u) = u³ − 3u² + 2.5u.
+
+And to where a path loses its stability, on a column that buckles.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -11,7 +14,7 @@ from numpy.typing import NDArray
 from pagd.fem.assembly import Assembly, State
 from pagd.fem.conjugate import ConjugatePath
 from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
-from pagd.fem.linear_solver import SuperLUSolver
+from pagd.fem.linear_solver import LinearSolver, PardisoSolver, SuperLUSolver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.term import NO_INTERNAL, ElementSystem
 
@@ -126,3 +129,60 @@ def test_what_has_no_conjugate_cannot_step_by_it() -> None:
         ConjugatePath(method, CONTROL)
     with pytest.raises(ValueError, match="needs its term"):
         method.solve(State(0.0, np.zeros(2), (NO_INTERNAL,)), conjugate=1.0)
+
+
+@dataclass
+class Column(Balloon):
+    """Shortened by u under the load, it can go aside by v: u²/2 + (1 − u) v²/2 + v⁴/4 − load u.
+
+    Straight, v = 0, it is stable up to u = 1, with the load held or with u.
+    """
+
+    def energy(self, unknowns: FloatArray, load: float) -> float:
+        u, v = unknowns
+        return float(u**2 / 2 + (1 - u) * v**2 / 2 + v**4 / 4 - load * u)
+
+    def linearize(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
+    ) -> float:
+        u, v = unknowns
+        system.residual[0] = [u - v**2 / 2 - load, (1 - u) * v + v**3]
+        system.tangent[0] = [1.0, -v, 1 - u + 3 * v**2]
+        return self.energy(unknowns, load)
+
+
+def column(solver: LinearSolver) -> tuple[LoadPath, LoadPath]:
+    """The path of the column as the load rises, and on from there as it is shortened."""
+    method = Newton(Assembly([Column()], 2, np.zeros(2, bool)), solver, 2, load_term=Column())
+    control = replace(CONTROL, patience=20)
+    rising = Continuation(method, control)
+    first = rising.follow([0.5, 2.0], lambda step: None)
+    if not first.failure:
+        return first, first
+    return first, ConjugatePath(method, control).follow(
+        rising.states, [2.0], lambda step: None, first
+    )
+
+
+def test_a_path_ends_where_its_equilibria_become_unstable() -> None:
+    pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    for path in column(PardisoSolver()):
+        assert path.failure == "the equilibrium is unstable"
+        assert path.is_unstable
+        assert path.load == pytest.approx(1.0, abs=2 * CONTROL.smallest)
+
+
+def test_a_solver_that_cannot_tell_goes_on() -> None:
+    first, _ = column(SuperLUSolver())
+    assert (first.load, first.failure, first.is_unstable) == (2.0, "", False)
+
+
+def test_behind_a_limit_point_it_is_unstable_under_the_load_alone() -> None:
+    pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    term = Balloon()
+    method = Newton(Assembly([term], 2, np.zeros(2, bool)), PardisoSolver(), 2, load_term=term)
+    for place, directions in ((0.5, 0), (1.0, 1), (1.5, 0)):
+        found = method.solve(State(0.0, np.full(2, place), (NO_INTERNAL,)), conjugate=place)
+        assert (found.unstable_directions, found.is_unstable) == (directions, False)
+    found = method.solve(State(force(1.0), np.full(2, 1.0), (NO_INTERNAL,)))
+    assert (found.unstable_directions, found.is_unstable) == (1, True)

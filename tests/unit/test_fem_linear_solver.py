@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, random_array, triu
+from scipy.sparse import csr_array, eye_array, random_array, triu
 
 import pagd.fem.linear_solver as module
 from pagd.errors import InputError
@@ -53,6 +53,20 @@ def analyse(solver: LinearSolver, matrix: csr_array) -> FloatArray:
     upper.sort_indices()
     solver.analyse(upper.indptr.astype(np.int32), upper.indices.astype(np.int32))
     return np.asarray(upper.data)
+
+
+def test_negative_pivots_are_as_many_as_negative_eigenvalues() -> None:
+    pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    for shift in (0.0, 2.0, 20.0):
+        matrix = csr_array(saddle_point() - shift * eye_array(135))
+        made = PardisoSolver()
+        values = analyse(made, matrix)
+        made.solve(values, np.ones(135))
+        expected = int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
+        assert made.negative_pivots == expected
+        assert expected > 15 or shift == 0.0
+        made.free()
+    assert SuperLUSolver().negative_pivots is None
 
 
 def test_another_right_hand_side_takes_the_same_factors(solver: LinearSolver) -> None:

@@ -18,6 +18,7 @@ from cases_meshes import bending_meshes, mixed_meshes, twisting_meshes
 from cases_nested import nested_meshes
 from cases_paper import circle, elastica
 from cases_solid import block_bending, convergence, cook_membrane, patch_test, rigid_rotation
+from cases_stability import heavy_column
 from cases_supports import block_on_plane, own_weight
 from cases_tangents import tangents
 from figure import Case, Group
@@ -43,6 +44,7 @@ CASES: tuple[Case, ...] = (
     Case(rows=narrow_row, group=Group.contact),
     Case(rows=block_on_plane, group=Group.supports),
     Case(rows=own_weight, group=Group.supports),
+    Case(rows=heavy_column, group=Group.supports),
     Case(rows=small_pressure, group=Group.supports),
     Case(rows=balance_of_forces, group=Group.supports),
     Case(rows=plate_and_edge, group=Group.supports),
