@@ -4,8 +4,9 @@
         [--time-limit 1800] [--config JSON] [--out results/random_designs]
         [--markdown FILE] [--report-only]
 
-Each design has a process of its own. Repeating the command runs only what is not finished yet.
-Written to the folder: report.json, with a row a design, and report.md.
+Each design has a process of its own. Repeating the command runs only what is not finished yet by
+stages of the same versions; designs of more than one commit are told in the report. To run all
+anew, give another folder. Written to the folder: report.json, with a row a design, and report.md.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def as_markdown(report: Mapping[str, Any]) -> str:
     ]
     if summary["spreads"]["newton_iterations_blocked"]:
         nothing = "None of those that were begun."
-        parts += ["## Blocked force that did not converge"]
+        parts += ["## Blocked force that did not go all the way"]
         parts += _cases(summary["blocked_others"], nothing)
     parts += ["## Machine", *_machine(report["machine"], summary)]
     return "\n\n".join(parts) + "\n"
@@ -67,7 +67,22 @@ def _introduction(report: Mapping[str, Any]) -> list[str]:
     parts = [_wrapped(text), "```sh\n" + report["command"] + "\n```"]
     if designs["done"] < designs["asked"]:
         parts.append(f"**{designs['done']} of {designs['asked']} designs are done so far.**")
-    return parts
+    return parts + _mixture(report["summary"]["commits"])
+
+
+def _mixture(commits: Mapping[str, int]) -> list[str]:
+    """Say so where the study went on after the repository had changed."""
+    if len(commits) < 2:
+        return []
+    text = (
+        f"**Designs of more than one commit: {_counts(commits)}.** All are of the same versions of "
+        "the stages, but the figures below are of no single state of the program."
+    )
+    return [_wrapped(text)]
+
+
+def _counts(commits: Mapping[str, int]) -> str:
+    return ", ".join(f"{commit} ({count})" for commit, count in commits.items())
 
 
 def _endings(summary: Mapping[str, Any]) -> list[str]:
@@ -188,12 +203,11 @@ def _case(case: Mapping[str, Any]) -> str:
 
 def _machine(machine: Mapping[str, Any], summary: Mapping[str, Any]) -> list[str]:
     versions = ", ".join(f"{name} {version}" for name, version in machine["versions"].items())
-    commits = ", ".join(f"{commit} ({count})" for commit, count in summary["commits"].items())
     return [
         _wrapped(
             f"{machine['processor']}, {machine['cores']} cores, {machine['memory_GB']:.0f} GB, "
             f"{machine['system']}. {machine['processes']} designs at a time. {versions}. "
-            f"Commit (designs): {commits}."
+            f"Commit (designs): {_counts(summary['commits'])}."
         )
     ]
 

@@ -50,6 +50,8 @@ class Study:
         With the keys ``end`` (see :class:`robustness.processes.Ending`), ``cause``, ``seconds``
         and ``commit``. One that was made of something else, by other stages, or that was killed
         with the study, is none; nor is one that finished and whose records are not all there.
+        Another commit alone is no reason to run a design again: a long study goes on after an edit
+        that leaves the stages' versions as they are, and the report says what is of which commit.
         """
         try:
             run: dict[str, Any] = json.loads((self.folder(named) / _RUN).read_text("utf-8"))

@@ -52,7 +52,7 @@ def summarize(results: Sequence[Result], asked: int) -> dict[str, Any]:
         "blocked_others": [
             _case(r, r.blocked_status, r.blocked_pressure_kPa, r.blocked_reason)
             for r in results
-            if r.blocked_status in ("buckled", "not_converged")
+            if r.blocked_status is not None and not r.blocked_goes_all_the_way
         ],
         "slowest": [_slow(r) for r in sorted(results, key=lambda r: -r.seconds)[:_SLOWEST]],
         "commits": dict(Counter(r.commit or "unknown" for r in results).most_common()),

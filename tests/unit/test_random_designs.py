@@ -494,3 +494,39 @@ def test_lines_of_text_are_no_longer_than_a_hundred() -> None:
     assert max(map(len, page.split("\n"))) <= 100
     assert "- r0001 (bending): `not_converged` at 50 kPa. No step beyond 12.34 kPa" in page
     assert "**2 of 200 designs are done so far.**" in page
+
+
+def test_a_held_tip_that_went_all_the_way_is_not_listed() -> None:
+    endings = ("ok", "buckled", "not_converged", "overstretched", None)
+    results = [
+        result(n, blocked_status=status, blocked_iterations=9, blocked_pressure_kPa=10.0 * n)
+        for n, status in enumerate(endings, start=1)
+    ]
+    page = page_of(results, len(results))
+    listed = page.partition("## Blocked force that did not go all the way")[2]
+    cases = [line for line in listed.partition("##")[0].splitlines() if line]
+    assert cases == [
+        "- r0002 (bending): `buckled` at 20 kPa.",
+        "- r0003 (bending): `not_converged` at 30 kPa.",
+    ]
+
+
+def test_the_page_says_that_designs_are_of_more_than_one_commit() -> None:
+    results = [result(n, commit=made) for n, made in enumerate(["a1", "b2", "b2", None], start=1)]
+    text = in_one_line(page_of(results, 4))
+    assert "**Designs of more than one commit: b2 (2), a1 (1), unknown (1).**" in text
+    assert "more than one commit" not in page_of(results[1:3], 2)
+
+
+def test_another_commit_alone_runs_nothing_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = Study(tmp_path, designs(2), CONFIG)
+    for named, made in zip(study.designs, ("a1", "b2"), strict=True):
+        monkeypatch.setattr(studies, "commit", lambda made=made: made)
+        study.start(named)
+        leave_records(study.folder(named), named)
+        study.end(named, FINISHED)
+    assert study.unfinished() == []
+    runs = [study.run_of(named) for named in study.designs]
+    assert [run["commit"] for run in runs if run] == ["a1", "b2"]
