@@ -22,8 +22,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Walls are slanted by up to 45° to the actuator; nothing else of the outside looks along it.
-_LOOKS_ALONG = 0.5
+# Share of a face's normal along the actuator from which on the face is a wall. Walls may be slanted
+# by 60° (limits.theta_deg in the schema of the configuration), which leaves them cos 60° = 0.5; the
+# sides, the tops and the base have none.
+_LOOKS_ALONG = 0.4
 
 
 class Body:

@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 
 from pagd.actuation import Actuation, ActuationResult, Body, free_actuation, use_threads
 from pagd.errors import InputError, Status
-from pagd.mesh.primitives import hollow_block
+from pagd.mesh.primitives import grid, hollow_block
+from pagd.mesh.quadratic import quadratic_mesh
+from pagd.mesh.tagging import name_surfaces
 from pagd.mesh.types import Mesh
+from pagd.validation import schema
 
 FloatArray = NDArray[np.float64]
 
@@ -268,3 +271,23 @@ def test_threads(monkeypatch: pytest.MonkeyPatch) -> None:
         assert os.environ["MKL_NUM_THREADS"] == os.environ["OMP_NUM_THREADS"] == "1"
     finally:
         numba.set_num_threads(before)
+
+
+LIMITS = schema("config")["properties"]["limits"]["properties"]
+
+
+@pytest.mark.parametrize("slant_deg", [0.0, 45.0, LIMITS["theta_deg"]["maximum"]])
+def test_walls_face_each_other_up_to_the_largest_slant(slant_deg: float) -> None:
+    """A notch of 2 mm along x between a chamber and a block, sheared as slanted walls are."""
+    solid = np.ones((8, 4, 4), np.bool_)
+    solid[1:3, 1:3, 2:3] = False
+    solid[5:6, :, 2:] = False
+    size = (16.0, 8.0, 8.0)
+    points, tets = grid(size, solid)
+    mesh = quadratic_mesh(points, tets, name_surfaces(points, tets, 2.0, False, 1e-9))
+    # Files of surfaces are rounded: a wall may be slanted by that much more.
+    skew = (1 + 1e-6) * np.tan(np.radians(slant_deg))
+    sheared = mesh.points + np.outer(mesh.points[:, 1], [skew, 0, 0])
+    body = Body(replace(mesh, points=sheared), MATERIAL, PAPER)
+    assert body.contact is not None
+    assert body.initial_gap == pytest.approx(2.0 * np.cos(np.radians(slant_deg)), rel=1e-5)
