@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -38,7 +38,7 @@ def measured_mode(
 
     Every joint that moves either twists or does not. All twist: "twisting"; none: "bending";
     some of each: "mixed", the row has joints of both kinds. Slanted chambers bend AND twist:
-    that alone is not mixed.
+    that alone is not mixed. Where every joint turns too little to be told, the tip twists or not.
 
     Parameters
     ----------
@@ -49,13 +49,27 @@ def measured_mode(
     """
     if is_still(float(bending_deg[-1]), float(twist_deg[-1]), thresholds):
         return "none"
-    twist, bending = np.abs(np.diff(twist_deg)), np.abs(np.diff(bending_deg))
-    whole = np.hypot(twist, bending)
-    moving = whole >= thresholds.joint_deg
-    share = float(np.mean(twist[moving] >= thresholds.twist_share * whole[moving]))
+    share = _twisting_share(np.diff(bending_deg), np.diff(twist_deg), thresholds)
+    if share is None:
+        # Many joints, each of which hardly turns: the tip is taken as a single one.
+        tip = replace(thresholds, joint_deg=0.0)
+        share = _twisting_share(bending_deg[-1:], twist_deg[-1:], tip)
+    if share is None:
+        return "none"
     if share < thresholds.mixed_share:
         return "bending"
     return "twisting" if share > 1.0 - thresholds.mixed_share else "mixed"
+
+
+def _twisting_share(
+    bending_deg: FloatArray, twist_deg: FloatArray, thresholds: Thresholds
+) -> float | None:
+    """Share of the joints that twist, of those that turn; None if none does."""
+    twist, whole = np.abs(twist_deg), np.hypot(bending_deg, twist_deg)
+    moving = (whole >= thresholds.joint_deg) & (whole > 0.0)
+    if not moving.any():
+        return None
+    return float(np.mean(twist[moving] >= thresholds.twist_share * whole[moving]))
 
 
 def is_still(bending_deg: float, twist_deg: float, thresholds: Thresholds = Thresholds()) -> bool:

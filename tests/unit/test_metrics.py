@@ -264,6 +264,24 @@ def test_twist_without_bending_is_twisting():
     assert measured_mode(np.zeros(9), np.linspace(0.0, 50.0, 9)) == "twisting"
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("tip_twist", "expected"), [(0.0, "bending"), (-1.5, "twisting")])
+def test_where_no_joint_turns_enough_the_tip_tells(tip_twist, expected):
+    """100 joints of 0.06° each."""
+    line = np.linspace(0.0, 1.0, 101)
+    assert measured_mode(6.0 * line, tip_twist * line) == expected
+    # The tip has turned by less than what is left out of joints.
+    short = Thresholds(still_deg=0.0, joint_deg=10.0)
+    assert measured_mode(6.0 * line, tip_twist * line, short) == expected
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_does_not_turn_at_all_has_no_mode():
+    for joint_deg in (0.0, 0.2):
+        every = Thresholds(still_deg=0.0, joint_deg=joint_deg)
+        assert measured_mode(np.zeros(9), np.zeros(9), every) == "none"
+
+
 def test_actuator_below_the_threshold_is_still():
     line = np.linspace(0.0, 1.0, 9)
     assert measured_mode(4.9 * line, 4.9 * line) == "none"
