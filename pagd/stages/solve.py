@@ -186,6 +186,7 @@ _HELD_FIGURES = (
     "volume_controlled_from_kPa",
     "smallest_gap_mm",
     "deepest_penetration_mm",
+    "penetration_share",
 )
 
 

@@ -84,6 +84,8 @@ PERFORMANCE = (
         "gap passes the contact law's width; null: never",
     ),
     Column("deepest_penetration_mm", "double", "mm", "of a chamber into another, on the path"),
+    Column("penetration_share", "double", "1", "deepest_penetration_mm by the gap at no pressure"),
+    Column("blocked_penetration_share", "double", "1", "the same of the analysis with a held tip"),
     Column("work_mJ", "double", "mJ", "work of the pressure, ∫p dV"),
     Column("work_density_kJ_m3", "double", "kJ/m³", "work of the pressure by elastomer volume"),
     Column("strain_p99", "double", "1", "99th percentile of the largest principal log strain"),

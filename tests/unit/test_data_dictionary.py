@@ -26,6 +26,7 @@ def test_the_page_is_in_step_with_the_columns(script: ModuleType) -> None:
     assert (ROOT / "docs" / "data.md").read_text(encoding="utf-8") == page
     assert "| `strain_rate_per_s` | double | 1/s |" in page
     assert "| energy balance | `energy_balance` |" in page
+    assert "| `blocked_penetration_share` | double | 1 |" in page
     assert max(map(len, page.splitlines())) <= 100
 
 

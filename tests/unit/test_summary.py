@@ -4,9 +4,11 @@ from typing import Any
 
 import pytest
 
+from pagd.actuation import ActuationResult
 from pagd.cli import main
 from pagd.errors import Status
 from pagd.record import Record, versions, write_record
+from pagd.stages.solve import _ending
 from pagd.summary import GATHERED, write_gathered, write_summary
 from pagd.tables import PERFORMANCE, read_rows, write_table
 
@@ -18,6 +20,7 @@ MEASURED = COST | {
     "energy_balance": -4e-6, "tets": 5825, "unknowns": 34813, "newton_iterations": 34,
     "material": "elastosil_m4601", "size_mm": 5.0, "chord_deg": 39.3,
     "blocked_force_N": 1.23456, "first_contact_pressure_kPa": None, "limit_points": 0,
+    "penetration_share": 0.012, "blocked_penetration_share": 0.015,
 }  # fmt: skip
 
 
@@ -61,6 +64,8 @@ def test_every_design_has_its_row_in_order(folders: list[Path], tmp_path: Path) 
     assert (bad["status"], bad["reason"]) == ("mesh_failed", "The mesher gave up.")
     assert (bad["origin"], bad["mode"], bad["bending_deg"]) == ("own", "mixed", None)
     assert good["bending_deg"] == 78.12
+    assert (good["penetration_share"], good["blocked_penetration_share"]) == (0.012, 0.015)
+    assert (bad["penetration_share"], bad["blocked_penetration_share"]) == (None, None)
     assert (own["name"], own["origin"], own["mode"]) == ("own", None, None)
     assert {row["fidelity"] for row in (bad, good, own)} == {"full"}
 
@@ -129,3 +134,10 @@ def test_the_command_line_writes_all_tables(folders: list[Path], tmp_path: Path)
     assert written == {"performance.parquet", "summary.csv", *(name for name, _, _ in GATHERED)}
     rows = read_rows(tmp_path / "tables" / "performance.parquet")
     assert [row["design_id"] for row in rows] == ["bad", "good", "own"]
+
+
+def test_the_record_tells_the_penetration_of_the_held_tip_as_that_of_the_free_one() -> None:
+    contact = {"deepest_penetration_mm": 0.015, "penetration_share": 0.015, "limit_points": 1}
+    figures = contact | {"variant": "edge", "blocked_force_N": 0.7, "pressure_kPa": 17.0}
+    held = ActuationResult(Status.buckled, "It snaps.", [], {}, figures | {"tets": 2000})
+    assert _ending(held) == {"status": "buckled", "reason": "It snaps.", **figures}

@@ -54,7 +54,9 @@ pressure asked for, or that at which the free actuation ended early. The blocked
 analysis of its own, which may end elsewhere: at `blocked_force_pressure_kPa`, and with
 `blocked_force_status`. `largest_pressure_kPa` is above `pressure_kPa` where the pressure has
 fallen behind a limit point. `first_contact_pressure_kPa` is where the smallest gap passes the
-width of the contact law; it is null where walls never came so near, or contact was off.
+width of the contact law; it is null where walls never came so near, or contact was off. A share
+of penetration is the deepest one of all steps of its analysis by the smallest gap between facing
+walls of the undeformed actuator, and null where contact was off.
 `newton_iterations` are those of the free actuation, `blocked_force_iterations` those with the tip
 held; the times cover all stages and both analyses.""",
     ),
@@ -103,8 +105,7 @@ pressure is that of elastomer, paper and contact, and under gravity its potentia
         "a converged step of the analysis of the blocked force",
         BLOCKED,
         """\
-There is no such file where `solve.blocked_force` is `none`. The force is known at recorded
-states only.""",
+There is no such file where `solve.blocked_force` is `none`. The force is known at every step.""",
     ),
     Table(
         "Deformed states",
