@@ -75,8 +75,8 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     start, failure = _at_rest(body, newton)
     recorder(Step(start, 0, True))
     if failure:
-        recorder.ending = Status.not_converged, failure
-        return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure))
+        recorder.ending = failure
+        return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure[1]))
     control = StepControl(
         first=actuation.first_step_kPa * _KPA, smallest=actuation.smallest_step_kPa * _KPA
     )
@@ -92,29 +92,36 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     return _Followed(further, path.load / _KPA)
 
 
-def _at_rest(body: Body, newton: Newton) -> tuple[State, str]:
-    """The state without pressure, under gravity where there is any; why there is none."""
+def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | None]:
+    """The state without pressure, under gravity where there is any; why not all of gravity."""
     state = newton.assembly.at_rest()
     newton.assembly.look_around(state)
     if body.gravity is None:
         newton.assembly.linearize(state)
-        return state, ""
-    share, step = 0.0, _GRAVITY_STEP
+        return state, None
+    share, step, is_unstable = 0.0, _GRAVITY_STEP, False
     while share < 1.0:
         body.gravity.share = min(share + step, 1.0)
         result = newton.solve(state)
-        if result.state is not None:
+        if result.state is not None and not result.is_unstable:
             share, state = body.gravity.share, result.state
             continue
-        step /= 2
+        step, is_unstable = step / 2, is_unstable or result.is_unstable
         if step < _SMALLEST_GRAVITY_STEP:
             body.gravity.share = share
-            return state, (
-                f"No equilibrium beyond {share:.1%} of gravity was found, before any pressure "
-                f"({result.reason})."
-            )
+            return state, _too_heavy(share, result.reason, is_unstable)
     # Once more, from as near as that: the force on a plate shows every micrometre.
-    return newton.solve(state).state or state, ""
+    return newton.solve(state).state or state, None
+
+
+def _too_heavy(share: float, failure: str, is_unstable: bool) -> tuple[Status, str]:
+    """Why no more than a share of gravity can act; whether a try for more was unstable."""
+    if is_unstable:
+        reason = f"Before any pressure, at {share:.1%} of gravity, the actuator buckles."
+        return Status.buckled, reason
+    return Status.not_converged, (
+        f"No equilibrium beyond {share:.1%} of gravity was found, before any pressure ({failure})."
+    )
 
 
 def _ending(
@@ -123,21 +130,22 @@ def _ending(
     path = followed.path
     if recorder.ending:
         return recorder.ending
-    if path.failure and path.is_unstable:
-        return Status.buckled, (
-            f"At {pressure_kPa.max():.4g} kPa the equilibrium loses its stability: the actuator "
-            f"buckles; from {path.load / _KPA:.4g} kPa on no step of the volume led further."
-        )
-    if path.failure:
-        means = "no step of the pressure"
+    if not path.failure:
+        return Status.ok, None
+    limits = limit_points(pressure_kPa)
+    highest = pressure_kPa[limits[-1]] if len(limits) else path.load / _KPA
+    if path.is_unstable:
+        reason = f"At {highest:.4g} kPa the equilibrium loses its stability: the actuator buckles"
         if followed.volume_controlled_from is not None:
-            means += f" and, from {followed.volume_controlled_from:.4g} kPa on, of the volume"
-        beyond = f"Beyond {path.load / _KPA:.4g} kPa"
-        limits = limit_points(pressure_kPa)
-        if len(limits):
-            beyond += f", behind a limit point at {pressure_kPa[limits[0]]:.4g} kPa,"
-        return Status.not_converged, f"{beyond} {means} converged ({path.failure})."
-    return Status.ok, None
+            reason += f"; by its volume it was followed to {path.load / _KPA:.4g} kPa"
+        return Status.buckled, f"{reason} ({path.failure})."
+    means = "no step of the pressure"
+    if followed.volume_controlled_from is not None:
+        means += f" and, from {followed.volume_controlled_from:.4g} kPa on, of the volume"
+    beyond = f"Beyond {path.load / _KPA:.4g} kPa"
+    if len(limits):
+        beyond += f", behind a limit point at {highest:.4g} kPa,"
+    return Status.not_converged, f"{beyond} {means} converged ({path.failure})."
 
 
 def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: LinearSolver) -> Figures:
@@ -151,6 +159,7 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
         "pressure_kPa": path.load / _KPA,
         "solid_volume_mm3": body.solid_volume,
         "linear_solver": solver.name,
+        "stability_checked": solver.negative_pivots is not None,
     }
     if followed.volume_controlled_from is not None:
         figures["volume_controlled_from_kPa"] = followed.volume_controlled_from

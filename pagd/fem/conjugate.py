@@ -56,7 +56,7 @@ class ConjugatePath:
         self,
         newton: Newton,
         control: StepControl,
-        smallest_share: float = 1e-3,
+        smallest_share: float = 1e-2,
         most_steps: int = 300,
     ) -> None:
         if newton.load_term is None:
@@ -74,13 +74,15 @@ class ConjugatePath:
         last load is reached, or ``observe`` stops it, or no step converges to an equilibrium that
         is stable while the conjugate is held.
         """
-        control, wanted, path = self._control, list(loads), replace(path, failure="")
+        control, wanted = self._control, list(loads)
+        path = replace(path, failure="", is_unstable=False)
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
         step = first = points[-1].conjugate - points[-2].conjugate
         end = path.steps + self._most_steps
         while wanted:
             if path.steps >= end:
-                return replace(path, failure=f"{self._most_steps} steps were not enough")
+                reason = f"{self._most_steps} steps were not enough"
+                return replace(path, failure=reason, is_unstable=False)
             taken, count = step, len(points)
             result = self._try(points, points[-1].conjugate + step)
             correction = result.corrections[0] if result.corrections else math.inf
@@ -96,7 +98,8 @@ class ConjugatePath:
                 iterations, landed = self._land(points[-1], point, wanted[0])
                 path = replace(path, iterations=path.iterations + iterations)
                 if landed.state is None:
-                    return replace(path, failure=f"no state found at the wanted {wanted[0]:g}")
+                    reason = f"no state found at the wanted {wanted[0]:g}"
+                    return replace(path, failure=reason, is_unstable=False)
                 path = longer(path, landed.state.load, landed)
                 del wanted[0]
                 stop = observe(Step(landed.state, iterations, True))
