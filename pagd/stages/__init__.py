@@ -15,10 +15,10 @@ STAGE_VERSIONS = {
     "geometry": 1,
     "repair": 1,
     "mesh": 1,
-    "solve": 3,
-    "metrics": 3,
+    "solve": 4,
+    "metrics": 4,
     "figures": 3,
     "generative_figures": 2,
-    "summary": 3,
+    "summary": 4,
     "report": 4,
 }

@@ -149,14 +149,22 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+#: Figures of the free actuation that are the design's.
+_OF_THE_PATH = (
+    "deepest_penetration_mm",
+    "penetration_share",
+    "limit_points",
+    "largest_pressure_kPa",
+)
+
+
 def _of_solve(solved: Record) -> dict[str, Any]:
     """Return the figures of the whole path, and of the analysis with a held tip, if there is one.
 
     The blocked force is the one of its own last pressure.
     """
     figures = solved.figures
-    known = ("deepest_penetration_mm", "limit_points", "largest_pressure_kPa")
-    path = {key: figures.get(key) for key in known}
+    path = {key: figures.get(key) for key in _OF_THE_PATH}
     held = figures.get("blocked_force")
     if not held:
         return path
@@ -166,6 +174,7 @@ def _of_solve(solved: Record) -> dict[str, Any]:
         "blocked_force_variant": held["variant"],
         "blocked_force_status": held["status"],
         "blocked_force_iterations": held.get("newton_iterations"),
+        "blocked_penetration_share": held.get("penetration_share"),
     }
 
 

@@ -42,6 +42,7 @@ BLOCKED_ENDING = {
     "pressure_kPa": 17.0,
     "blocked_force_N": 0.7,
     "newton_iterations": 23,
+    "penetration_share": 0.004,
 }
 
 
@@ -63,6 +64,7 @@ def solved(root, held=True):
         "newton_iterations": 15,
         "solid_volume_mm3": 400.0,
         "deepest_penetration_mm": 0.002,
+        "penetration_share": 0.002 / 1.2,
         "limit_points": 1,
         "largest_pressure_kPa": 35.0,
         "initial_gap_mm": 1.2,
@@ -132,6 +134,8 @@ def test_the_record_is_the_row_of_all_designs(tmp_path):
         "newton_iterations": 15,
         "first_contact_pressure_kPa": pytest.approx(22.0 - 20 * ContactLaw().width),
         "deepest_penetration_mm": 0.002,
+        "penetration_share": 0.002 / 1.2,
+        "blocked_penetration_share": 0.004,
         "limit_points": 1,
         "strain_p99": 0.5,
         "strain_rate_per_kPa": None,
@@ -170,6 +174,7 @@ def test_a_balance_that_is_infinite_is_null(tmp_path, monkeypatch):
 
 def test_records_without_the_newer_figures_have_null_there(tmp_path, monkeypatch):
     monkeypatch.delitem(BLOCKED_ENDING, "newton_iterations")
+    monkeypatch.delitem(BLOCKED_ENDING, "penetration_share")
     folders = solved(tmp_path)
     older = read_record(folders.solve)
     del older.figures["largest_pressure_kPa"]
@@ -177,6 +182,7 @@ def test_records_without_the_newer_figures_have_null_there(tmp_path, monkeypatch
     run(folders, tmp_path / "metrics", completed({}), sections=5)
     row = performance_row(read_record(tmp_path / "metrics"))
     assert (row["blocked_force_iterations"], row["largest_pressure_kPa"]) == (None, None)
+    assert row["blocked_penetration_share"] is None
     assert row["blocked_force_status"] == "not_converged"
 
 
