@@ -94,17 +94,9 @@ class ConjugatePath:
                     return replace(path, failure=result.reason or UNSTABLE)
                 continue
             point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])
-            while wanted and points[-1].state.load < wanted[0] <= point.state.load:
-                iterations, landed = self._land(points[-1], point, wanted[0])
-                path = replace(path, iterations=path.iterations + iterations)
-                if landed.state is None:
-                    reason = f"no state found at the wanted {wanted[0]:g}"
-                    return replace(path, failure=reason, is_unstable=False)
-                path = longer(path, landed.state.load, landed)
-                del wanted[0]
-                stop = observe(Step(landed.state, iterations, True))
-                if stop or not wanted:
-                    return replace(path, stopped=stop or "")
+            path = self._land_between(points[-1], point, wanted, observe, path)
+            if path.failure or path.stopped or not wanted:
+                return path
             points = [*points, point][-control.order - 1 :]
             reached = Step(result.state, result.iterations, False)
             path = longer(path, result.state.load, result)
@@ -112,6 +104,23 @@ class ConjugatePath:
             if stop:
                 return replace(path, stopped=stop)
             step = taken * control.factor(correction, count)
+        return path
+
+    def _land_between(
+        self, before: _Point, after: _Point, wanted: list[float], observe: Observer, path: LoadPath
+    ) -> LoadPath:
+        """The path after landing on the wanted loads between two points, taken off the list."""
+        while wanted and before.state.load < wanted[0] <= after.state.load:
+            iterations, landed = self._land(before, after, wanted[0])
+            path = replace(path, iterations=path.iterations + iterations)
+            if landed.state is None:
+                reason = f"no state found at the wanted {wanted[0]:g}"
+                return replace(path, failure=reason, is_unstable=False)
+            path = longer(path, landed.state.load, landed)
+            del wanted[0]
+            stop = observe(Step(landed.state, iterations, True))
+            if stop:
+                return replace(path, stopped=stop)
         return path
 
     def _try(self, points: Sequence[_Point], conjugate: float) -> NewtonResult:

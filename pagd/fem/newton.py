@@ -111,7 +111,6 @@ class Newton:
         self.settings = settings or NewtonSettings()
         self._displacements = displacements
         self._multipliers = int((assembly.free >= displacements).sum())
-        self._falling = False
         self._analyse()
 
     def _analyse(self) -> None:
@@ -133,7 +132,7 @@ class Newton:
             return NewtonResult(None, 0, (), "the first guess inverts elements")
         while len(corrections) < settings.iterations:
             try:
-                correction, load = self._correction(state, residual, values, conjugate)
+                correction, load, falls = self._correction(state, residual, values, conjugate)
             except SingularMatrixError as error:
                 return NewtonResult(None, len(corrections), tuple(corrections), str(error))
             size = float(np.abs(correction[: self._displacements]).max())
@@ -143,9 +142,8 @@ class Newton:
             if size < settings.tolerance:
                 final = _loaded(self.assembly.advance(state, correction), load)
                 unstable = self._unstable_directions()
-                stopped = int(conjugate is not None and self._falling)
                 return NewtonResult(
-                    final, len(corrections), tuple(corrections), "", unstable, unstable > stopped
+                    final, len(corrections), tuple(corrections), "", unstable, unstable > falls
                 )
             step = self._admissible_step(state, correction, load)
             if step is None:
@@ -172,24 +170,26 @@ class Newton:
 
     def _correction(
         self, state: State, residual: FloatArray, values: FloatArray, conjugate: float | None
-    ) -> tuple[FloatArray, float]:
-        """The Newton correction (size,), zero for held unknowns, and that of the load."""
+    ) -> tuple[FloatArray, float, bool]:
+        """The Newton correction (size,), zero for held unknowns, and that of the load.
+
+        And whether the load falls with its conjugate, if that is held.
+        """
         if self.assembly.pattern is not self._pattern:
             self._analyse()
         free = self.assembly.free
         correction = np.zeros(self.assembly.size)
         correction[free] = self.solver.solve(values, -residual[free])
         if conjugate is None:
-            return correction, 0.0
+            return correction, 0.0, False
         if self.load_term is None:
             raise ValueError("to hold the conjugate of the load, Newton's method needs its term")
         value, slopes = self.load_term.conjugate(state.unknowns)
         by_load = np.zeros(self.assembly.size)
         by_load[free] = self.solver.solve_again(slopes[free])
         growth = float(slopes @ by_load)
-        self._falling = growth < 0
         load = (conjugate - value - float(slopes @ correction)) / growth
-        return correction + load * by_load, load
+        return correction + load * by_load, load, growth < 0
 
     def _unstable_directions(self) -> int:
         """Directions in which the energy falls from the state of the last correction."""

@@ -44,7 +44,7 @@ CASES: tuple[Case, ...] = (
     Case(rows=narrow_row, group=Group.contact),
     Case(rows=block_on_plane, group=Group.supports),
     Case(rows=own_weight, group=Group.supports),
-    Case(rows=heavy_column, group=Group.supports),
+    Case(rows=heavy_column, group=Group.supports, program="MKL"),
     Case(rows=small_pressure, group=Group.supports),
     Case(rows=balance_of_forces, group=Group.supports),
     Case(rows=plate_and_edge, group=Group.supports),

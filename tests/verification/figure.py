@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from pagd.fem.linear_solver import linear_solver
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Figure:
@@ -90,7 +92,7 @@ class Case:
     costly
         Whether they take too long for the tests.
     program
-        A program they need; without it on the path they are left out.
+        A program they need, on the path, or "MKL"; without it they are left out.
     """
 
     rows: Rows
@@ -106,6 +108,8 @@ class Case:
     @property
     def is_possible(self) -> bool:
         """Whether the program they need is there."""
+        if self.program == "MKL":
+            return linear_solver().name == "pardiso"
         return self.program is None or shutil.which(self.program) is not None
 
 
