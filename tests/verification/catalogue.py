@@ -12,6 +12,13 @@ from cases_calculix import (
 )
 from cases_composite import bent_strip, twisted_strip
 from cases_contact import narrow_row, two_blocks
+from cases_contact_rows import (
+    half_row,
+    mixed_row,
+    slanted_row,
+    slanted_row_by_ftetwild,
+    straight_row_by_ftetwild,
+)
 from cases_inflation import moved_walls, walls_under_pressure
 from cases_material import balloon, homogeneous_states
 from cases_meshes import bending_meshes, mixed_meshes, twisting_meshes
@@ -42,6 +49,11 @@ CASES: tuple[Case, ...] = (
     Case(rows=balance_of_energy, group=Group.pressure),
     Case(rows=two_blocks, group=Group.contact),
     Case(rows=narrow_row, group=Group.contact),
+    Case(rows=half_row, group=Group.contact),
+    Case(rows=slanted_row, group=Group.contact),
+    Case(rows=mixed_row, group=Group.contact),
+    Case(rows=straight_row_by_ftetwild, group=Group.contact),
+    Case(rows=slanted_row_by_ftetwild, group=Group.contact, costly=True),
     Case(rows=block_on_plane, group=Group.supports),
     Case(rows=own_weight, group=Group.supports),
     Case(rows=heavy_column, group=Group.supports, program="MKL"),
