@@ -39,8 +39,8 @@ MIXED = replace(SLANTED, N=4, alpha=0.5)
 #: Fewer pressures than those of the narrow row: nothing is read off them.
 SPARSE = replace(SETTINGS, recorded_step_kPa=25.0)
 SIZE = 5.0  # mm
-#: Of meshes that fTetWild draws, each time another: fewer of these have walls that curve so much
-#: that 50 kPa presses their corners in by 2 % of the gap.
+#: Of meshes that fTetWild draws, each time another: of four slanted rows of 5 mm, two elements up a
+#: wall, one was penetrated by 2.1 % of the gap.
 FINER = 4.0  # mm
 
 MIRROR = "symmetry: slanted the other way, the mirror image"

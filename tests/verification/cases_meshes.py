@@ -74,10 +74,10 @@ def bending_meshes() -> list[Figure]:
     Gmsh's meshes of 5, 4 and 3 mm, and those of 5 and 3 mm with every edge halved, eight times as
     many tetrahedra. Meshes drawn anew scatter (thin walls have one layer of elements in all of
     them), halves do not: limits are extrapolated from 3 mm and its halves, with the order 1.09 of
-    the inward edges, which the case of nested meshes shows for a mean and a volume; its angle
-    comes in more slowly. How well limits are known shows in those from 5 mm and its halves. The
-    error of a row is the estimate for its mesh. The tip is that of the free actuator,
-    relative to its whole displacement; the blocked force is that of the edge on its support.
+    the inward edges, which the case of nested meshes shows for a mean and a volume, but not
+    for its angle. How well limits are known shows in those from 5 mm and its halves. The error of a
+    row is the estimate for its mesh. The tip is that of the free actuator, relative to its whole
+    displacement; the blocked force is that of the edge on its support.
 
     Tolerances of errors are bounds against getting worse, a third above what was found on the same
     mesh; they say nothing of the accuracy that can be reached. The order of the angle is that of a
