@@ -14,6 +14,7 @@ from pagd.design import Design, GeometryRules
 from pagd.geometry import render
 from pagd.materials import Elastomer, Sheet, elastomer, find_material, sheet
 from pagd.mesh.gmsh_mesher import GmshMesher
+from pagd.mesh.interface import Mesher
 from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.types import Mesh
 from pagd.metrics import Trajectory, measure
@@ -44,8 +45,10 @@ def mesh_of(name: str, size: float, half: bool = False) -> Mesh:
 
 
 @lru_cache(maxsize=8)
-def mesh_of_design(drawn: Design, size: float, half: bool = False) -> Mesh:
-    """The same for any design."""
+def mesh_of_design(
+    drawn: Design, size: float, half: bool = False, mesher: Mesher | None = None
+) -> Mesh:
+    """The same for any design; by gmsh unless another mesher is given."""
     with tempfile.TemporaryDirectory() as folder:
         parts = []
         for part in ("body", "base"):
@@ -53,7 +56,7 @@ def mesh_of_design(drawn: Design, size: float, half: bool = False) -> Mesh:
             render(drawn, GeometryRules(), part, raw, half=half)
             repair(raw, repaired)
             parts.append(repaired)
-        return GmshMesher()(SurfacePair.from_stl(*parts, half), size)
+        return (mesher or GmshMesher())(SurfacePair.from_stl(*parts, half), size)
 
 
 def mirrored(mesh: Mesh) -> Mesh:

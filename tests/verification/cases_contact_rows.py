@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 from actuators import (
@@ -24,14 +22,11 @@ from scipy.sparse.csgraph import connected_components
 
 from pagd.actuation import ActuationResult, blocked_force, free_actuation
 from pagd.actuation.body import normals_of
-from pagd.design import Design, GeometryRules
+from pagd.design import Design
 from pagd.fem.contact import ContactLaw, FaceContact
-from pagd.geometry import render
 from pagd.mesh.ftetwild_mesher import FTetWildMesher
-from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.types import FloatArray, IntArray, Mesh
 from pagd.metrics import energy_balance, first_contact_pressure, work_of_pressure
-from pagd.repair import repair
 
 #: All chambers slanted; two slanted ones before two straight ones, with a gap of each kind.
 SLANTED = replace(NARROW, theta=30.0, alpha=1.0)
@@ -149,14 +144,7 @@ def _by_gmsh(design: Design, size: float, half: bool = False) -> Row:
 
 
 def _by_ftetwild(design: Design, size: float, half: bool = False) -> Row:
-    with tempfile.TemporaryDirectory() as folder:
-        for part in ("body", "base"):
-            drawn = Path(folder, f"{part}_drawn.stl")
-            render(design, GeometryRules(), part, drawn, half=half)
-            repair(drawn, Path(folder, f"{part}.stl"))
-        surfaces = SurfacePair.from_stl(Path(folder, "body.stl"), Path(folder, "base.stl"), half)
-        mesh = FTetWildMesher()(surfaces, size)
-    return _free(design, mesh)
+    return _free(design, mesh_of_design(design, size, half, FTetWildMesher()))
 
 
 def slanted_row() -> list[Figure]:

@@ -33,8 +33,9 @@ every row anew and writes this page, with the same rows as data in
 `make verify`, and `--list` names the cases. The quick ones are part of `make test`.
 
 The error is (ours − reference) / reference, or relative to what the row says where the reference
-is zero. Tolerances are set by the mesh of the case, for the reason given above each table: they
-are the largest error that the coarse meshes here may have, not the accuracy that can be reached.
+is zero. Tolerances have the reason given above each table. Most are the largest error that the
+coarse mesh of the case may have, not the accuracy that can be reached; those of the mesh studies
+are bounds against getting worse, a third above what was found.
 There is no published measurement of a twist with complete geometry and material, so that nothing
 here claims agreement with an experiment.
 """
