@@ -179,7 +179,7 @@ def _events(summary: Mapping[str, Any]) -> list[str]:
     if deepest:
         sentences.append(
             f"The deepest penetration is {_percent(max(deepest), 2)} of the gap; "
-            f"{contact['over_limit']} designs exceed {_percent(PENETRATION_LIMIT, 0)}."
+            f"designs that exceed {_percent(PENETRATION_LIMIT, 0)}: {contact['over_limit']}."
         )
     if limits["known"]:
         sentences.append(
