@@ -45,8 +45,10 @@ FOR_PEOPLE = (
     ("tip y, mm", "tip_y_mm", "z.1f"),
     ("tip z, mm", "tip_z_mm", "z.1f"),
     ("blocked force, N", "blocked_force_N", "z.3f"),
+    ("blocked force at, kPa", "blocked_force_pressure_kPa", ".4g"),
+    ("blocked force ended", "blocked_force_status", ""),
     ("first contact, kPa", "first_contact_pressure_kPa", ".1f"),
-    ("energy balance", "energy_balance", "z.4f"),
+    ("energy balance", "energy_balance", "z.5f"),
     ("novelty", "novelty", ".3f"),
     ("time, s", "wall_s", ".1f"),
 )

@@ -133,12 +133,12 @@ def _ending(
     if not path.failure:
         return Status.ok, None
     limits = limit_points(pressure_kPa)
-    highest = pressure_kPa[limits[-1]] if len(limits) else path.load / _KPA
+    highest = float(pressure_kPa[limits[-1]] if len(limits) else pressure_kPa.max())
     if path.is_unstable:
         reason = f"At {highest:.4g} kPa the equilibrium loses its stability: the actuator buckles"
-        if followed.volume_controlled_from is not None:
-            reason += f"; by its volume it was followed to {path.load / _KPA:.4g} kPa"
-        return Status.buckled, f"{reason} ({path.failure})."
+        if len(limits):
+            reason += f"; by its volume it was followed down to {path.load / _KPA:.4g} kPa"
+        return Status.buckled, f"{reason}. No further step was found."
     means = "no step of the pressure"
     if followed.volume_controlled_from is not None:
         means += f" and, from {followed.volume_controlled_from:.4g} kPa on, of the volume"

@@ -18,7 +18,7 @@ STAGE_VERSIONS = {
     "solve": 4,
     "metrics": 4,
     "figures": 3,
-    "generative_figures": 2,
+    "generative_figures": 3,
     "summary": 4,
-    "report": 4,
+    "report": 5,
 }

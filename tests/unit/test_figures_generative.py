@@ -541,6 +541,15 @@ def test_force_against_bending_leaves_out_what_was_not_held():
     )
 
 
+def test_force_of_a_held_tip_that_ended_early_is_crossed():
+    held = simulated("g0001", "generated", "mixed", blocked_force_status="ok")
+    buckled = simulated("g0002", "generated", "mixed", bending=10.0, blocked_force_N=3.5)
+    both = performance([held, buckled | {"blocked_force_status": "buckled"}])
+    (axes,) = force_bending_figure(both).axes
+    crosses = [c for c in axes.collections if (c.get_paths()[0].codes == Path2D.MOVETO).sum() == 2]
+    assert np.concatenate([c.get_offsets() for c in crosses]).tolist() == [[10.0, 3.5]]
+
+
 OF_PERFORMANCE = (bending_twist_figure, force_bending_figure, novelty_performance_figure)
 
 

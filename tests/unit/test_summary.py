@@ -81,7 +81,7 @@ def test_the_table_for_people(folders: list[Path], tmp_path: Path) -> None:
     rows = {row["design"]: row for row in csv.DictReader((tmp_path / "s.csv").open())}
     assert rows["good"]["bending, °"] == "78.1"
     assert rows["good"]["tip y, mm"] == "0.0"
-    assert rows["good"]["energy balance"] == "0.0000"
+    assert rows["good"]["energy balance"] == "0.00000"
     assert rows["good"]["blocked force, N"] == "1.235"
     assert rows["good"]["first contact, kPa"] == ""
     assert {row["time, s"] for row in rows.values()} == {"6.5"}

@@ -43,7 +43,8 @@ def test_what_is_unstable_at_its_end_buckles() -> None:
     status, reason = ending(_Followed(path(0.03, "it is unstable", True)), RISING)
     assert status is Status.buckled
     assert reason == (
-        "At 30 kPa the equilibrium loses its stability: the actuator buckles (it is unstable)."
+        "At 30 kPa the equilibrium loses its stability: the actuator buckles. No further step was "
+        "found."
     )
 
 
@@ -52,7 +53,17 @@ def test_where_the_pressure_fell_before_the_limit_point_is_named() -> None:
     assert status is Status.buckled
     assert reason == (
         "At 30 kPa the equilibrium loses its stability: the actuator buckles; by its volume it "
-        "was followed to 22 kPa (corrections grow)."
+        "was followed down to 22 kPa. No further step was found."
+    )
+
+
+def test_a_fall_too_small_for_a_limit_point_leaves_the_largest_pressure() -> None:
+    pressure = np.array([0.0, 10.0, 39.3406, 39.3390])
+    status, reason = ending(_Followed(path(0.039339, "corrections grow", True), 39.0), pressure)
+    assert status is Status.buckled
+    assert reason is not None
+    assert reason.startswith(
+        "At 39.34 kPa the equilibrium loses its stability: the actuator buckles."
     )
 
 

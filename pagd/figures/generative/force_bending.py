@@ -31,6 +31,8 @@ def draw_force_bending(paths: GenerativePaths, out: Path) -> None:
 def force_bending_figure(performance: pd.DataFrame) -> Figure:
     """Return the picture: a point a design, each analysis at the last pressure it reached.
 
+    Crossed where either analysis has ended early: its point is not that of the last pressure.
+
     Parameters
     ----------
     performance
@@ -44,6 +46,8 @@ def force_bending_figure(performance: pd.DataFrame) -> Figure:
     found = with_numbers(performance, "bending_deg", "blocked_force_N")
     if found.empty:
         raise NothingToDraw("No simulated design has both a bending and a blocked force.")
+    held_to_the_end = found["blocked_force_status"].isin(["ok"])
+    found = found.assign(status=found["status"].where(held_to_the_end, "held tip ended early"))
     plural = "s" if len(found) != 1 else ""
     columns = ("bending_deg", "blocked_force_N")
     labels = ("bending of the free tip, degrees", "blocked force, N")

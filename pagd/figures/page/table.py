@@ -32,6 +32,7 @@ _COLUMNS: Final = (
     _Column("bending", "°", "bending_deg", _number(1)),
     _Column("twist", "°", "twist_deg", _number(1)),
     _Column("blocked force", "N", "blocked_force_N", _number(3)),
+    _Column("of the tip held to", "kPa", "blocked_force_pressure_kPa", _number(1)),
     _Column("tip x", "mm", "tip_x_mm", _number(1)),
     _Column("tip y", "mm", "tip_y_mm", _number(1)),
     _Column("tip z", "mm", "tip_z_mm", _number(1)),
