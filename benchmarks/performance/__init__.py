@@ -1,0 +1,1 @@
+"""What the commands behind docs/performance.md have in common."""
