@@ -18,7 +18,7 @@ __all__ = ["End", "Ending", "Task", "run_tasks"]
 
 WORKER = Path(__file__).with_name("worker.py")
 
-# One design a core: threads would only wait for each other.
+# Usually one design a core: threads would only wait for each other.
 _THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 
 _LOOK_EVERY_S = 0.1
@@ -47,7 +47,7 @@ class Ending:
 class _Running:
     """A task that has been started."""
 
-    def __init__(self, task: Task, limit_s: float, program: Sequence[str]) -> None:
+    def __init__(self, task: Task, limit_s: float, program: Sequence[str], threads: int) -> None:
         self.task, self._limit_s = task, limit_s
         self._start = time.monotonic()
         with task.log.open("wb") as log:
@@ -57,7 +57,7 @@ class _Running:
                 stdin=subprocess.PIPE,
                 stdout=log,
                 stderr=subprocess.STDOUT,
-                env=os.environ | dict.fromkeys(_THREADS, "1"),
+                env=os.environ | dict.fromkeys(_THREADS, str(threads)),
                 start_new_session=True,
             )
         # Left open: its end tells the worker that the study is no more.
@@ -95,6 +95,7 @@ def run_tasks(
     limit_s: float,
     ended: Callable[[Task, Ending], None],
     program: Sequence[str] = (sys.executable, "-P", str(WORKER)),
+    threads: int = 1,
 ) -> None:
     """Run every task, ``processes`` of them at a time.
 
@@ -110,12 +111,14 @@ def run_tasks(
         Told of every task as soon as it has ended, however it has.
     program
         Reads a task from standard input and does it.
+    threads
+        That each of them may use.
     """
     waiting, running = iter(tasks), list[_Running]()
     try:
         while True:
             for task in islice(waiting, processes - len(running)):
-                running.append(_Running(task, limit_s, program))
+                running.append(_Running(task, limit_s, program, threads))
             if not running:
                 return
             time.sleep(_LOOK_EVERY_S)

@@ -19,7 +19,7 @@ from pagd.record import read_record
 from pagd.stages import STAGE_VERSIONS
 from robustness.processes import Ending, Task
 
-__all__ = ["STAGES", "Study"]
+__all__ = ["STAGES", "Study", "commit", "made_of"]
 
 #: The stages of the chain, in order.
 STAGES: Final = ("geometry", "repair", "mesh", "solve", "metrics")
@@ -57,7 +57,7 @@ class Study:
             run: dict[str, Any] = json.loads((self.folder(named) / _RUN).read_text("utf-8"))
         except (OSError, ValueError):
             return None
-        if run.get("made_of") != self._made_of(named) or run.get("end") in (None, _STARTED):
+        if run.get("made_of") != made_of(named, self.config) or run.get("end") in (None, _STARTED):
             return None
         return None if run["end"] == "finished" and not self._is_complete(named) else run
 
@@ -93,21 +93,10 @@ class Study:
         return how
 
     def _note(self, named: NamedDesign, how: Mapping[str, Any]) -> None:
-        text = json.dumps({"made_of": self._made_of(named), **how}, indent=2, ensure_ascii=False)
+        text = json.dumps(
+            {"made_of": made_of(named, self.config), **how}, indent=2, ensure_ascii=False
+        )
         write_text(self.folder(named) / _RUN, text + "\n")
-
-    def _made_of(self, named: NamedDesign) -> dict[str, Any]:
-        sections = {stage: part(self.config, stage) for stage in STAGES}
-        file = str(material_file(self.config))
-        made_of = {
-            "design": named.as_json(),
-            "config": sections,
-            "material": material_as_json(file, self.config["material"], "material"),
-            "paper": material_as_json(file, self.config["paper"], "paper"),
-            "versions": {"pagd": __version__, **{s: STAGE_VERSIONS[s] for s in STAGES}},
-        }
-        # As it reads in a file: tuples are lists there.
-        return dict(json.loads(json.dumps(made_of)))
 
     def _is_complete(self, named: NamedDesign) -> bool:
         try:
@@ -115,6 +104,21 @@ class Study:
         except InputError:
             return False
         return all(record.design_id == named.name for record in records)
+
+
+def made_of(named: NamedDesign, config: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all that the result of a design depends on, as it reads in a file of JSON."""
+    sections = {stage: part(config, stage) for stage in STAGES}
+    file = str(material_file(config))
+    ingredients = {
+        "design": named.as_json(),
+        "config": sections,
+        "material": material_as_json(file, config["material"], "material"),
+        "paper": material_as_json(file, config["paper"], "paper"),
+        "versions": {"pagd": __version__, **{s: STAGE_VERSIONS[s] for s in STAGES}},
+    }
+    # Tuples are lists there.
+    return dict(json.loads(json.dumps(ingredients)))
 
 
 def commit() -> str | None:

@@ -7,12 +7,16 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import sys
 import threading
 from pathlib import Path
 from typing import Any
 
-__all__ = ["run_chain"]
+__all__ = ["USAGE_NAME", "run_chain"]
+
+#: What a process has used, written as its last act: processor seconds ``cpu_s``, imports included.
+USAGE_NAME = "usage.json"
 
 
 def run_chain(task: dict[str, Any]) -> None:
@@ -30,6 +34,13 @@ def run_chain(task: dict[str, Any]) -> None:
         mesh=out["mesh"], solve=out["solve"], geometry=out["geometry"], repair=out["repair"]
     )
     metrics.run(folders, out["metrics"], config)
+    Path(task["out"], USAGE_NAME).write_text(json.dumps({"cpu_s": _cpu_seconds()}), "utf-8")
+
+
+def _cpu_seconds() -> float:
+    """Processor time of this process since it was started, and of its children."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return round(sum(one.ru_utime + one.ru_stime for one in used), 3)
 
 
 def _leave_with_the_study() -> None:
