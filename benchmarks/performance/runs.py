@@ -29,11 +29,19 @@ __all__ = ["Measured", "Measurement", "Run"]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A design and a completed configuration; ``label`` is for people and unique in a study."""
+    """A design and a completed configuration; ``label`` is for people and unique in a study.
+
+    ``halvings``: how often every edge of the mesh is halved before it is solved.
+    """
 
     label: str
     named: NamedDesign
     config: Mapping[str, Any]
+    halvings: int = 0
+
+    def made_of(self) -> dict[str, Any]:
+        """Return all that its figures depend on, ready for JSON."""
+        return made_of(self.named, self.config) | {"halvings": self.halvings}
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +130,7 @@ class Measured:
             found = _measurement(place, endings[0])
         content = {
             "label": run.label,
-            "made_of": made_of(run.named, run.config),
+            "made_of": run.made_of(),
             "measurement": asdict(found),
         }
         text = json.dumps(content, indent=1, ensure_ascii=False)
@@ -147,7 +155,12 @@ def _workplace(folder: Path) -> Iterator[Path]:
 
 
 def _task(run: Run, out: Path) -> Task:
-    task = {"design": json.loads(run.named.as_json()), "out": str(out), "config": run.config}
+    task = {
+        "design": json.loads(run.named.as_json()),
+        "out": str(out),
+        "config": run.config,
+        "halvings": run.halvings,
+    }
     return Task(run.label, json.dumps(task), out / "output.txt")
 
 
@@ -162,7 +175,7 @@ def _measurement(folder: Path, ending: Ending) -> Measurement:
 
 
 def _digest(run: Run) -> str:
-    text = json.dumps(made_of(run.named, run.config), sort_keys=True)
+    text = json.dumps(run.made_of(), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

@@ -5,6 +5,7 @@ Ends at once when standard input closes: with the study, its workers are gone to
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import resource
@@ -20,7 +21,11 @@ USAGE_NAME = "usage.json"
 
 
 def run_chain(task: dict[str, Any]) -> None:
-    """Run geometry, repair, mesh, solve and metrics of a task's design, without pictures."""
+    """Run geometry, repair, mesh, solve and metrics of a task's design, without pictures.
+
+    With ``halvings`` in the task, every edge of the mesh is halved so many times before it is
+    solved, by what the verification refines its meshes with.
+    """
     from pagd.catalogue import design_from
     from pagd.stages import geometry, mesh, metrics, repair, solve
 
@@ -29,12 +34,22 @@ def run_chain(task: dict[str, Any]) -> None:
     geometry.run(design_from(json.dumps(task["design"])), out["geometry"], config)
     repair.run(out["geometry"], out["repair"], config)
     mesh.run(out["geometry"], out["repair"], out["mesh"], config)
+    for _ in range(task.get("halvings", 0)):
+        _halve(out["mesh"] / mesh.MESH_NAME)
     solve.run(out["mesh"], out["solve"], config, solve.materials_of(config))
     folders = metrics.Folders(
         mesh=out["mesh"], solve=out["solve"], geometry=out["geometry"], repair=out["repair"]
     )
     metrics.run(folders, out["metrics"], config)
     Path(task["out"], USAGE_NAME).write_text(json.dumps({"cpu_s": _cpu_seconds()}), "utf-8")
+
+
+def _halve(file: Path) -> None:
+    from pagd.mesh.msh import read_msh, write_msh
+
+    sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "verification"))
+    refinement = importlib.import_module("refinement")
+    write_msh(refinement.halved(read_msh(file)), file)
 
 
 def _cpu_seconds() -> float:

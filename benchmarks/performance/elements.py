@@ -1,0 +1,207 @@
+"""Elements and mesh sizes: which runs there are, and how far each tip is from the limit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from pagd.catalogue import NamedDesign
+from performance.fits import FloatArray, extrapolated
+from performance.options import free_config
+from performance.runs import Measurement, Run
+
+__all__ = ["FAMILIES", "Case", "Family", "Point", "points_of", "reference_of", "runs_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """Meshes that differ by their size alone; ``is_extrapolated``: pairs of them are too."""
+
+    name: str
+    mesher: str
+    element: str
+    is_extrapolated: bool = True
+
+
+#: By the option that names its sizes.
+FAMILIES: Final[Mapping[str, Family]] = {
+    "tetrahedra": Family("tetrahedra P2–P1", "gmsh", "taylor_hood"),
+    "element_pressure": Family("tetrahedra P2–P0", "gmsh", "element_pressure", False),
+    "hexahedra": Family("hexahedra, 27 nodes", "structured", "hexahedron"),
+}
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Case:
+    """A design, a last pressure, and the sizes (mm) of each family, coarse to fine.
+
+    ``halves``: a mesh of tetrahedra of that size is solved too with every edge halved; that and
+    the two finest meshes of hexahedra are what the limits are of.
+    """
+
+    named: NamedDesign
+    pressure_kPa: float
+    sizes: Mapping[str, tuple[float, ...]]
+    halves: float | None
+
+    @property
+    def title(self) -> str:
+        """Name for people."""
+        return f"{self.named.name}, {self.pressure_kPa:g} kPa"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Point:
+    """One way to the tip: a mesh, or the limit of two of them.
+
+    Attributes
+    ----------
+    family
+        Its key in :data:`FAMILIES`.
+    name
+        Mesh size or sizes, for people.
+    unknowns, solve_s, all_s
+        Number, and processor seconds of the analysis and of the whole process; sums for a limit.
+    tip
+        Displacement (3,) of the tip in mm; None where the analysis ended early, for the reason
+        in ``trouble``.
+    is_limit
+        Whether it is the limit of two meshes.
+    """
+
+    family: str
+    name: str
+    unknowns: int | None = None
+    solve_s: float | None = None
+    all_s: float | None = None
+    tip: FloatArray | None = None
+    trouble: str | None = None
+    is_limit: bool = False
+
+
+def runs_of(case: Case, config: str | None) -> dict[tuple[str, str], Run]:
+    """Return the runs of a case by family and name of the mesh, coarse to fine."""
+    found = {}
+    for family, sizes in case.sizes.items():
+        for size in sizes:
+            found[family, f"{size:g}"] = _run(case, family, size, config)
+    if case.halves is not None:
+        # The mesh that is halved is solved as it is too: a limit needs both.
+        whole = _run(case, "tetrahedra", case.halves, config)
+        found["tetrahedra", f"{case.halves:g}"] = whole
+        halves = Run(f"{whole.label}-halved", whole.named, whole.config, halvings=1)
+        found["tetrahedra", _halved(case.halves)] = halves
+    return found
+
+
+def points_of(
+    case: Case, measured: Mapping[tuple[str, str], Measurement], order: float
+) -> list[Point]:
+    """Return every mesh and the limits of neighbouring ones, family by family.
+
+    Parameters
+    ----------
+    case
+        The design and its sizes.
+    measured
+        By family and name of the mesh.
+    order
+        Of the error in the element size.
+    """
+    points: list[Point] = []
+    for key, family in FAMILIES.items():
+        single = [_point(key, name, one) for (of, name), one in measured.items() if of == key]
+        points += single
+        plain = [point for point in single if "halved" not in point.name]
+        if family.is_extrapolated:
+            points += [_limit(pair, order) for pair in pairwise(_descending(plain))]
+    return points
+
+
+def reference_of(case: Case, points: Sequence[Point], family: str, order: float) -> Point | None:
+    """Return the limit by the finest meshes of a family; None where these are not known.
+
+    Of the tetrahedra it is that of a mesh and its halves, which differ by nothing but their size.
+    """
+    single = [p for p in points if p.family == family and not p.is_limit]
+    if family == "tetrahedra" and case.halves is not None:
+        names = (f"{case.halves:g}", _halved(case.halves))
+        pair = [point for name in names for point in single if point.name == name]
+    else:
+        pair = _descending(single)[-2:]
+    if len(pair) < 2 or any(point.tip is None for point in pair):
+        return None
+    return _limit((pair[0], pair[1]), order)
+
+
+def _run(case: Case, key: str, size: float, config: str | None) -> Run:
+    family = FAMILIES[key]
+    made = free_config(config, size_mm=size, pressure_kPa=case.pressure_kPa)
+    made["mesh"]["meshers"] = [family.mesher]
+    made["solve"]["element"] = family.element
+    label = f"{case.named.name}-{case.pressure_kPa:g}kPa-{key}-{size:g}mm"
+    return Run(label, case.named, made)
+
+
+def _point(family: str, name: str, found: Measurement) -> Point:
+    figures = found.figures
+    if not found.is_complete:
+        return Point(family, name, trouble=found.trouble)
+    tips = np.array(figures["tip_mm"], np.float64)
+    return Point(
+        family,
+        name,
+        figures["unknowns"],
+        figures["free_cpu_s"],
+        _seconds(figures),
+        tips[-1, 1:] - tips[0, 1:],
+    )
+
+
+def _seconds(figures: Mapping[str, Any]) -> float:
+    whole = figures["process_cpu_s"]
+    return float(sum(figures["stages_cpu_s"].values()) if whole is None else whole)
+
+
+def _limit(pair: tuple[Point, Point], order: float) -> Point:
+    coarse, fine = pair
+    name = f"{coarse.name} and {fine.name}"
+    trouble = coarse.trouble or fine.trouble
+    if trouble or coarse.tip is None or fine.tip is None:
+        return Point(coarse.family, name, trouble=trouble, is_limit=True)
+    ratio = _ratio(coarse, fine)
+    if ratio <= 1:
+        reason = f"{fine.name} mm gives no finer mesh than {coarse.name} mm."
+        return Point(coarse.family, name, trouble=reason, is_limit=True)
+    tip = extrapolated(coarse.tip, fine.tip, ratio, order)
+    return Point(
+        coarse.family,
+        name,
+        (coarse.unknowns or 0) + (fine.unknowns or 0),
+        _sum(coarse.solve_s, fine.solve_s),
+        _sum(coarse.all_s, fine.all_s),
+        tip,
+        is_limit=True,
+    )
+
+
+def _ratio(coarse: Point, fine: Point) -> float:
+    """Ratio of the element sizes as the unknowns tell it: a wanted size is not always met."""
+    return float(((fine.unknowns or 1) / (coarse.unknowns or 1)) ** (1 / 3))
+
+
+def _sum(first: float | None, second: float | None) -> float | None:
+    return None if first is None or second is None else first + second
+
+
+def _descending(points: Sequence[Point]) -> list[Point]:
+    """Coarse to fine, by the wanted size."""
+    return sorted(points, key=lambda point: -float(point.name))
+
+
+def _halved(size: float) -> str:
+    return f"{size:g} halved"
