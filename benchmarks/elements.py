@@ -27,7 +27,7 @@ from performance.options import (
     must_be_positive,
 )
 from performance.origin import origin_lines
-from performance.page import publish
+from performance.page import must_have_section, publish
 from performance.runs import Measured
 
 from pagd.errors import InputError
@@ -41,6 +41,7 @@ def main() -> None:
     options = parser.parse_args()
     try:
         _check(options)
+        must_have_section(options.page, _SECTION)
         measured = measured_in(options, _SECTION)
         cases: dict[Case, list[Point]] = {}
         commits: set[str | None] = set()

@@ -31,7 +31,7 @@ from performance.options import (
     must_be_positive,
 )
 from performance.origin import origin_lines
-from performance.page import publish
+from performance.page import must_have_section, publish
 from performance.runs import Run
 
 from pagd.catalogue import NamedDesign
@@ -45,6 +45,7 @@ def main() -> None:
     parser = _parser()
     options = parser.parse_args()
     try:
+        must_have_section(options.page, options.mode)
         text, commits = _MODES[options.mode](options)
         usual = vars(_parser().parse_args([options.mode]))
         command = command_of("benchmarks/growth.py", vars(options), usual, options.mode)

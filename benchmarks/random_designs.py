@@ -2,11 +2,13 @@
 
     python benchmarks/random_designs.py [--designs 200] [--seed 1] [--size 5] [--processes 2]
         [--time-limit 1800] [--config JSON] [--out results/random_designs]
-        [--markdown FILE] [--report-only]
+        [--error-designs 20] [--markdown FILE] [--page docs/performance.md] [--report-only]
 
 Each design has a process of its own. Repeating the command runs only what is not finished yet by
 stages of the same versions; designs of more than one commit are told in the report. To run all
 anew, give another folder. Written to the folder: report.json, with a row a design, and report.md.
+Meshers and elements are those of the configuration. --error-designs solves some designs at half
+the mesh size too, for the error of their tips. --page writes the section of costs.
 """
 
 from __future__ import annotations
@@ -16,10 +18,16 @@ import json
 import shlex
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from datetime import timedelta
 from pathlib import Path
+from typing import Any
 
+from performance.origin import origin_lines
+from performance.page import must_have_section, write_section
+from robustness.costs import COST_KEYS, as_section
 from robustness.drawing import drawn_designs
+from robustness.errors import TipError, finer_study, tip_error
 from robustness.machine import machine
 from robustness.page import as_markdown
 from robustness.processes import Ending, Task, run_tasks
@@ -31,6 +39,11 @@ from pagd import config as configuration
 from pagd.errors import InputError
 from pagd.files import write_text
 
+#: Designs that are solved at half the mesh size too, with --page.
+ERROR_DESIGNS = 20
+
+_SECTION = "random"
+
 
 def main() -> None:
     """Run what is not finished, print the report and write it."""
@@ -38,9 +51,12 @@ def main() -> None:
     options = parser.parse_args()
     try:
         study = _study(options)
+        must_have_section(options.page, _SECTION)
+        finer = finer_study(study, _error_designs(options))
         if not options.report_only:
-            _run(study, options.processes, options.time_limit)
-        _report(study, options)
+            for one in (study, finer):
+                _run(one, options.processes, options.time_limit)
+        _report(study, finer, options)
     except InputError as error:
         parser.error(str(error))
     except KeyboardInterrupt:
@@ -51,11 +67,20 @@ def _study(options: argparse.Namespace) -> Study:
     for name in ("designs", "size", "processes", "time_limit"):
         if not getattr(options, name) > 0:
             raise InputError(f"--{name.replace('_', '-')} must be greater than 0.")
+    if options.error_designs is not None and options.error_designs < 0:
+        raise InputError("--error-designs must be at least 0.")
     if options.seed < 0:
         raise InputError("--seed must be at least 0.")
     config = configuration.load(options.config)
     config["mesh"]["size_mm"] = options.size
     return Study(options.out, drawn_designs(options.designs, options.seed, config), config)
+
+
+def _error_designs(options: argparse.Namespace) -> int:
+    """How many designs are solved at half the mesh size too."""
+    if options.error_designs is None:
+        return ERROR_DESIGNS if options.page else 0
+    return int(options.error_designs)
 
 
 def _run(study: Study, processes: int, limit_s: float) -> None:
@@ -92,7 +117,7 @@ class _Progress:
         )
 
 
-def _report(study: Study, options: argparse.Namespace) -> None:
+def _report(study: Study, finer: Study, options: argparse.Namespace) -> None:
     runs = [(named, study.run_of(named)) for named in study.designs]
     results = [result_of(named, study.folder(named), run) for named, run in runs if run]
     if not results:
@@ -109,6 +134,7 @@ def _report(study: Study, options: argparse.Namespace) -> None:
         "command": _command(options),
         "machine": machine(folders, options.processes),
         "summary": summarize(results, len(runs)),
+        "tip_errors": [error.as_dict() for error in _tip_errors(study, finer)],
         "results": [result.as_dict() for result in results],
     }
     page = as_markdown(report)
@@ -117,10 +143,30 @@ def _report(study: Study, options: argparse.Namespace) -> None:
     for file in filter(None, (study.out / "report.md", options.markdown)):
         write_text(file, page)
     print(page, end="")
+    if options.page:
+        write_section(options.page, _SECTION, _section(report, results, options))
+
+
+def _tip_errors(study: Study, finer: Study) -> list[TipError]:
+    found = (
+        tip_error(named, study.folder(named), finer.folder(named))
+        for named in finer.designs
+        if study.run_of(named) and finer.run_of(named)
+    )
+    return [error for error in found if error]
+
+
+def _section(
+    report: Mapping[str, Any], results: Sequence[Result], options: argparse.Namespace
+) -> str:
+    costs = [{key: getattr(one, key) for key in COST_KEYS} for one in results]
+    command = _command(options).replace(" \\\n  ", " ")
+    first = origin_lines(command, commits=report["summary"]["commits"])
+    return f"{first}\n\n{as_section(report, costs)}"
 
 
 #: Options that change what is on the page, or where it is written to.
-_REPEATED = ("designs", "seed", "size", "time_limit", "config", "markdown")
+_REPEATED = ("designs", "seed", "size", "time_limit", "config", "error_designs", "markdown", "page")
 
 
 def _command(options: argparse.Namespace) -> str:
@@ -156,7 +202,15 @@ def _parser() -> argparse.ArgumentParser:
         default=Path("results/random_designs"),
         help="folder (default: %(default)s)",
     )
+    add(
+        "--error-designs",
+        type=int,
+        metavar="N",
+        help="solve so many designs at half the mesh size too "
+        f"(default: {ERROR_DESIGNS} with --page, else none)",
+    )
     add("--markdown", type=Path, help="file that the report is written to as well")
+    add("--page", type=Path, help=f"page whose section '{_SECTION}' is replaced")
     add("--report-only", action="store_true", help="run nothing; report what there is")
     return parser
 

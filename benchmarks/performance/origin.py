@@ -17,6 +17,8 @@ __all__ = ["LIBRARIES", "origin_lines", "ran_on"]
 #: Packages that the time of an analysis depends on.
 LIBRARIES = ("gmsh", "mkl", "numba", "numpy", "pypardiso", "scipy")
 
+_LONGEST_COMMAND = 98
+
 
 def origin_lines(
     command: str, libraries: Iterable[str] = LIBRARIES, commits: Iterable[str | None] = ()
@@ -34,7 +36,7 @@ def origin_lines(
     """
     named = {name: _installed(name) for name in libraries}
     versions = {name: version for name, version in named.items() if version}
-    return f"`{command}`\n\n{wrapped(ran_on(versions, commits))}"
+    return f"{_shown(command)}\n\n{wrapped(ran_on(versions, commits))}"
 
 
 def ran_on(versions: Mapping[str, str], commits: Iterable[str | None] = ()) -> str:
@@ -47,6 +49,13 @@ def ran_on(versions: Mapping[str, str], commits: Iterable[str | None] = ()) -> s
         f"{here['system']}. {', '.join(f'{name} {told[name]}' for name in sorted(told))}. "
         f"Commit {', '.join(known)}."
     )
+
+
+def _shown(command: str) -> str:
+    """A command as code, an option a line where it would be too long for one."""
+    if len(command) <= _LONGEST_COMMAND:
+        return f"`{command}`"
+    return "```sh\n" + command.replace(" --", " \\\n  --") + "\n```"
 
 
 def _installed(package: str) -> str | None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from pagd.errors import InputError
 from pagd.files import must_exist, write_text
 
-__all__ = ["publish", "read_section", "table", "wrapped", "write_section"]
+__all__ = ["must_have_section", "publish", "read_section", "table", "wrapped", "write_section"]
 
 _WIDTH = 100
 
@@ -44,6 +44,12 @@ def write_section(page: Path, name: str, text: str) -> None:
 def read_section(page: Path, name: str) -> str:
     """Return what stands in a section; ``InputError`` as of :func:`write_section`."""
     return _split(page, name)[1].strip()
+
+
+def must_have_section(page: Path | None, name: str) -> None:
+    """Refuse a page without the section before anything is measured; None is no page."""
+    if page is not None:
+        _split(page, name)
 
 
 def publish(page: Path | None, name: str, text: str) -> None:

@@ -12,6 +12,7 @@ from pagd.errors import Status
 from pagd.record import RECORD_NAME, Record, read_record
 from robustness.drawing import is_thin_walled
 from robustness.study import STAGES
+from robustness.timings import cpu_of, cpu_of_process
 
 __all__ = ["PHYSICAL_STOPS", "STARTING", "Result", "result_of"]
 
@@ -48,10 +49,12 @@ class Result:
         What it took.
     blocked_penetration_share
         Its deepest penetration, by the initial gap.
+    free_cpu_s, blocked_cpu_s
+        Processor time of either analysis.
     seconds
         Wall time of the process.
-    cpu_s
-        Processor time of all stages.
+    cpu_s, process_cpu_s
+        Processor time of all stages; of the whole process, with its imports.
     stages_s
         Wall time by stage, and of starting the process.
     smallest_gap_mm, penetration_share, touched
@@ -63,6 +66,8 @@ class Result:
         Maxima of the pressure along the path.
     peak_memory_MB
         Of the process.
+    mesher, element
+        What made the mesh, and what was solved on it.
     tets, unknowns
         Size of the model.
     commit
@@ -78,6 +83,9 @@ class Result:
     commit: str | None
     stages_s: Mapping[str, float]
     cpu_s: float | None = None
+    process_cpu_s: float | None = None
+    free_cpu_s: float | None = None
+    blocked_cpu_s: float | None = None
     peak_memory_MB: float | None = None
     free_status: str | None = None
     pressure_kPa: float | None = None
@@ -97,6 +105,8 @@ class Result:
     touched: bool | None = None
     energy_balance: float | None = None
     limit_points: int | None = None
+    mesher: str | None = None
+    element: str | None = None
     tets: int | None = None
     unknowns: int | None = None
 
@@ -120,6 +130,27 @@ class Result:
         """Of both analyses together."""
         return (self.free_iterations or 0) + (self.blocked_iterations or 0)
 
+    @property
+    def outside_cpu_s(self) -> float | None:
+        """Processor time of everything but the two analyses."""
+        if self.free_cpu_s is None or self.process_cpu_s is None:
+            return None
+        return self.process_cpu_s - self.free_cpu_s - (self.blocked_cpu_s or 0.0)
+
+    @property
+    def without_blocked_cpu_s(self) -> float | None:
+        """Processor time of a design whose blocked force nobody asks for."""
+        if self.process_cpu_s is None:
+            return None
+        return self.process_cpu_s - (self.blocked_cpu_s or 0.0)
+
+    @property
+    def blocked_by_free(self) -> float | None:
+        """Processor time of the blocked force by that of the free actuation."""
+        if self.free_cpu_s is None or self.blocked_cpu_s is None:
+            return None
+        return self.blocked_cpu_s / self.free_cpu_s
+
     def as_dict(self) -> dict[str, Any]:
         """All attributes, ready for JSON."""
         return asdict(self)
@@ -132,6 +163,7 @@ def result_of(named: NamedDesign, folder: Path, run: Mapping[str, Any]) -> Resul
     """
     records = {s: read_record(folder / s) for s in STAGES if (folder / s / RECORD_NAME).is_file()}
     figures = _free(records) | _blocked(records) | _contact(records) | _cost(records)
+    figures["process_cpu_s"] = cpu_of_process(folder)
     walls = {stage: record.timings_s["wall"] for stage, record in records.items()}
     starting = max(run["seconds"] - sum(walls.values()), 0.0)
     status, reason = _verdict(records, run)
@@ -170,6 +202,9 @@ def _free(records: Mapping[str, Record]) -> dict[str, Any]:
         "free_steps": figures["steps"],
         "free_rejected": figures["rejected_steps"],
         "free_s": record.timings_s.get("solve"),
+        "free_cpu_s": cpu_of(record, "solve"),
+        "mesher": records["mesh"].figures.get("mesher") if "mesh" in records else None,
+        "element": figures.get("element") or record.configuration.get("solve", {}).get("element"),
         **{key: figures.get(key) for key in ("tets", "unknowns", "limit_points")},
     }
 
@@ -187,6 +222,7 @@ def _blocked(records: Mapping[str, Record]) -> dict[str, Any]:
         "blocked_iterations": figures.get("newton_iterations"),
         "blocked_rejected": figures.get("rejected_steps"),
         "blocked_s": record.timings_s.get("blocked_force"),
+        "blocked_cpu_s": cpu_of(record, "blocked_force"),
         "blocked_penetration_share": None if depth is None or gap is None else depth / gap,
     }
 

@@ -28,6 +28,11 @@ _SPREADS: Final[Mapping[str, Callable[[Result], float | None]]] = {
     "rejected_steps_blocked": lambda r: r.blocked_rejected,
     "free_s": lambda r: r.free_s,
     "blocked_s": lambda r: r.blocked_s,
+    "free_cpu_s": lambda r: r.free_cpu_s,
+    "blocked_cpu_s": lambda r: r.blocked_cpu_s,
+    "without_blocked_cpu_s": lambda r: r.without_blocked_cpu_s,
+    "outside_cpu_s": lambda r: r.outside_cpu_s,
+    "blocked_by_free": lambda r: r.blocked_by_free,
     "chain_s": lambda r: r.seconds,
     "chain_cpu_s": lambda r: r.cpu_s,
     "unknowns": lambda r: r.unknowns,
@@ -55,6 +60,9 @@ def summarize(results: Sequence[Result], asked: int) -> dict[str, Any]:
             if r.blocked_status is not None and not r.blocked_goes_all_the_way
         ],
         "slowest": [_slow(r) for r in sorted(results, key=lambda r: -r.seconds)[:_SLOWEST]],
+        "models": dict(
+            Counter(f"{r.element} by {r.mesher}" for r in results if r.mesher).most_common()
+        ),
         "commits": dict(Counter(r.commit or "unknown" for r in results).most_common()),
     }
 

@@ -1,0 +1,122 @@
+"""Discretisation errors of the tip: some designs of a study once more at half the mesh size."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from performance.figures import tips_of
+from performance.fits import EDGE_ORDER, FloatArray, extrapolated, relative_distance
+
+from pagd.catalogue import NamedDesign
+from pagd.errors import InputError
+from pagd.record import read_record
+from robustness.study import Study
+
+__all__ = ["ALLOWED_ERROR", "TipError", "every_kth", "finer_study", "tip_error"]
+
+#: Discretisation error of the tip that is allowed, by its displacement.
+ALLOWED_ERROR: Final = 0.03
+
+
+@dataclass(frozen=True, slots=True)
+class TipError:
+    """How far the tip of a design is from that on a finer mesh, and from its limit.
+
+    Attributes
+    ----------
+    design_id, mode
+        The design.
+    pressure_kPa
+        The last one that both meshes have reached.
+    unknowns, finer_unknowns
+        Of the two meshes.
+    difference, error
+        Distance of the tips of both meshes, and estimated distance to the limit; by the
+        displacement of the limit.
+    """
+
+    design_id: str
+    mode: str
+    pressure_kPa: float
+    unknowns: int
+    finer_unknowns: int
+    difference: float
+    error: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """All attributes, ready for JSON."""
+        return asdict(self)
+
+
+def every_kth(designs: Sequence[NamedDesign], count: int) -> list[NamedDesign]:
+    """Return ``count`` designs at most, evenly spread, of both modes.
+
+    Modes take turns in a study: of an even distance the designs would all be of one mode, so
+    that every other one of them is the next.
+    """
+    if count <= 0:
+        return []
+    step = max(len(designs) // count, 1)
+    places = [k * step + (k % 2 if step % 2 == 0 else 0) for k in range(count)]
+    return [designs[place] for place in places if place < len(designs)]
+
+
+def finer_study(study: Study, count: int) -> Study:
+    """Return the study of ``count`` designs at half the mesh size, free actuation alone."""
+    config = dict(study.config)
+    config["mesh"] = config["mesh"] | {"size_mm": config["mesh"]["size_mm"] / 2}
+    config["solve"] = config["solve"] | {"blocked_force": "none"}
+    return Study(study.out / "half_size", every_kth(study.designs, count), config)
+
+
+def tip_error(
+    named: NamedDesign, folder: Path, finer: Path, order: float = EDGE_ORDER
+) -> TipError | None:
+    """Return the error of a design's tip from the folders of both meshes.
+
+    None where one of them has no state under pressure, or where the finer mesh is not finer.
+    """
+    tips = [_displacements(tips_of(one)) for one in (folder, finer)]
+    unknowns = [_unknowns(one) for one in (folder, finer)]
+    common = [pressure for pressure in tips[0] if pressure in tips[1]]
+    if not common or None in unknowns:
+        return None
+    sizes = [float(number or 0) for number in unknowns]
+    ratio = (sizes[1] / sizes[0]) ** (1 / 3)
+    if ratio <= 1:
+        return None
+    coarse, fine = (tip[max(common)] for tip in tips)
+    limit = extrapolated(coarse, fine, ratio, order)
+    return TipError(
+        named.name,
+        named.design.mode,
+        max(common),
+        int(sizes[0]),
+        int(sizes[1]),
+        float(np.linalg.norm(coarse - fine) / np.linalg.norm(limit)),
+        relative_distance(coarse, limit),
+    )
+
+
+def _displacements(tips: Sequence[Sequence[float]] | None) -> Mapping[float, FloatArray]:
+    """Displacement (3,) of the tip by pressure, the unloaded state left out.
+
+    A path may pass a pressure more than once: the first time counts.
+    """
+    if not tips:
+        return {}
+    rest, found = np.array(tips[0][1:]), dict[float, FloatArray]()
+    for pressure, *place in tips[1:]:
+        found.setdefault(round(pressure, 6), np.array(place) - rest)
+    return found
+
+
+def _unknowns(folder: Path) -> int | None:
+    try:
+        return read_record(folder / "solve").figures.get("unknowns")
+    except InputError:
+        return None
