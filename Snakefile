@@ -29,6 +29,7 @@ localrules:
 
 
 include: "workflow/rules/common.smk"  # configuration and designs, checked; input functions
+include: "workflow/rules/server.smk"  # a process that has loaded what the stages need
 include: "workflow/rules/dataset.smk"  # training designs and their reduced space
 include: "workflow/rules/generate.smk"  # new designs, how new they are, which are simulated
 include: "workflow/rules/design.smk"  # one design: geometry, repair, mesh, solve, metrics

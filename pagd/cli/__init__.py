@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
-import traceback
 from collections.abc import Sequence
 
-from pagd.cli.output import start_log
-from pagd.cli.parser import make_parser
-from pagd.errors import InputError, StageFailure
+from pagd.cli.client import ask_server
 
 __all__ = ["main"]
-
-#: Exit codes.
-FAILED, BAD_INPUT, FAULT, INTERRUPTED = 1, 2, os.EX_SOFTWARE, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,23 +19,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     70: anything unforeseen, with a traceback: a fault of pagd, to be reported.
     130: interrupted.
     """
-    options = make_parser().parse_args(arguments)
-    start_log(options.verbose)
-    try:
-        code: int = options.handler(options)
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    code = ask_server(words)
+    if code is not None:
         return code
-    except InputError as error:
-        return _complain(error, BAD_INPUT)
-    except StageFailure as failure:
-        return _complain(f"{failure.status}: {failure.reason}", FAILED)
-    except KeyboardInterrupt:
-        return _complain("interrupted", INTERRUPTED)
-    except Exception:
-        # Python would exit with 1, which says that the design failed.
-        traceback.print_exc()
-        return _complain("this is a fault of pagd; please report it", FAULT)
+    # Imported only here: a command that a server runs needs none of it.
+    from pagd.cli.execute import execute
 
-
-def _complain(what: object, code: int) -> int:
-    print(f"pagd: {what}", file=sys.stderr)
-    return code
+    return execute(words)
