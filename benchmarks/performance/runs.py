@@ -26,6 +26,9 @@ from performance.figures import figures_of
 
 __all__ = ["Measured", "Measurement", "Run"]
 
+# Neither too fine to be solved in a second or two, nor so coarse that gmsh has to try again.
+_WARM_UP_MM = 5.0
+
 
 @dataclass(frozen=True, slots=True)
 class Run:
@@ -185,8 +188,8 @@ def _kind(run: Run) -> tuple[str, ...]:
 
 
 def _coarse(config: Mapping[str, Any]) -> dict[str, Any]:
-    solve = config["solve"] | {"maximum_pressure_kPa": 2.0, "recorded_step_kPa": 2.0}
-    return {**config, "mesh": config["mesh"] | {"size_mm": 10.0}, "solve": solve}
+    solve = config["solve"] | {"maximum_pressure_kPa": 1.0, "recorded_step_kPa": 1.0}
+    return {**config, "mesh": config["mesh"] | {"size_mm": _WARM_UP_MM}, "solve": solve}
 
 
 def _told(run: Run, found: Measurement) -> str:
