@@ -22,9 +22,8 @@ run: .venv/pagd-installed ## Do all of it: training designs, generated designs, 
 dataset: .venv/pagd-installed ## Draw the training designs only: results/dataset/.
 	snakemake --profile profiles/default --cores $(CORES) dataset
 
-# With as many as are generated, the selection is all of them.
-sweep: .venv/pagd-installed ## Simulate all generated designs, 1,000 of them: hours; make it on a large machine.
-	snakemake --profile profiles/default --cores $(CORES) --config 'selection={"designs": 1000000}'
+sweep: .venv/pagd-installed ## Do all of it with all generated designs simulated, 1,000 of them: hours.
+	snakemake --profile profiles/sweep --cores $(CORES)
 
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.

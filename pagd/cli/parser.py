@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a
 """
 
 
+@functools.cache
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser; each subcommand carries its ``handler(options) -> exit code``."""
     parser = argparse.ArgumentParser(

@@ -11,7 +11,6 @@ The server ends, and its workers with it, when the process that has started it i
 
 from __future__ import annotations
 
-import json
 import os
 import selectors
 import shutil
@@ -23,8 +22,9 @@ import tempfile
 import time
 import traceback
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from pagd.cli.client import SERVER
 
@@ -73,6 +73,16 @@ def start() -> None:
     _started.append(process)
 
 
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """What :mod:`pagd.cli.client` sends."""
+
+    words: list[str]
+    folder: str
+    environment: dict[str, str]
+    streams: list[int]
+
+
 class _Server:
     """Serves until ``lifeline``, which nobody writes to, is closed at the other end."""
 
@@ -106,8 +116,8 @@ class _Server:
     def _accept(self) -> None:
         connection, _ = self._listener.accept()
         try:
-            request, streams = _receive(connection)
-        except (OSError, ValueError):
+            request = _receive(connection)
+        except (OSError, ValueError, IndexError):
             connection.close()
             return
         self._load()
@@ -115,9 +125,9 @@ class _Server:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         process = os.fork()
         if process == 0:
-            os._exit(self._work(connection, request, streams))
+            os._exit(self._work(connection, request))
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        for stream in streams:
+        for stream in request.streams:
             os.close(stream)
         self._workers[process] = connection
         self._selector.register(connection, selectors.EVENT_READ, process)
@@ -130,7 +140,7 @@ class _Server:
         elif self._kernels == 0:  # the first workers may have compiled them by now
             self._kernels = load_kernels()
 
-    def _work(self, connection: socket.socket, request: Any, streams: list[int]) -> int:
+    def _work(self, connection: socket.socket, request: _Request) -> int:
         """Run a command in the forked process; return its exit code."""
         try:
             signal.set_wakeup_fd(-1)
@@ -142,8 +152,8 @@ class _Server:
             own = (self._listener, self._ended, self._wakeup)
             for other in (connection, *self._workers.values(), *own):
                 other.close()
-            _take_place(request, streams)
-            return _run(request["arguments"])
+            _take_place(request)
+            return _run(request.words)
         except BaseException:
             traceback.print_exc()
             return _FAULT
@@ -183,24 +193,28 @@ class _Server:
                 os.killpg(process, signal.SIGKILL)  # its group bears its number
 
 
-def _receive(connection: socket.socket) -> tuple[Any, list[int]]:
+def _receive(connection: socket.socket) -> _Request:
     connection.settimeout(_PATIENCE_S)
-    _, streams, _, _ = socket.recv_fds(connection, 1, 3)
+    size, streams, _, _ = socket.recv_fds(connection, 16, 3)
     with connection.makefile("rb") as file:
-        request = json.loads(file.readline())
+        count, *parts = file.read(int(size)).split(b"\0")
     connection.settimeout(None)
-    return request, streams
+    texts = [os.fsdecode(part) for part in parts]
+    words = int(count)
+    pairs = (text.partition("=") for text in texts[words + 1 :])
+    environment = {name: value for name, _, value in pairs}
+    return _Request(texts[:words], texts[words], environment, streams)
 
 
-def _take_place(request: Any, streams: list[int]) -> None:
+def _take_place(request: _Request) -> None:
     """Put this process in the place of the one that asks."""
     os.setsid()
-    for number, stream in enumerate(streams):
+    for number, stream in enumerate(request.streams):
         os.dup2(stream, number)
         os.close(stream)
-    os.chdir(request["folder"])
+    os.chdir(request.folder)
     os.environ.clear()
-    os.environ.update(request["environment"])
+    os.environ.update(request.environment)
 
 
 def _run(arguments: list[str]) -> int:
