@@ -1,9 +1,9 @@
 """Elements and mesh sizes: error of the tip and seconds, in one table.
 
     python benchmarks/elements.py [--designs bending twisting mixed] [--pressures 10 50]
-        [--tetrahedra 6 4 3] [--element-pressure 6 4 3] [--hexahedra 8 6 4 3 2] [--halves 4]
-        [--order 1.089] [--config JSON] [--page docs/performance.md] [--out results/benchmarks]
-        [--time-limit 7200] [--anew]
+        [--tetrahedra 6 4 3] [--element-pressure 6 4 3] [--hexahedra 6 4 3 2]
+        [--halved-tetrahedra 4] [--halved-hexahedra 6] [--order 1.089] [--config JSON]
+        [--page docs/performance.md] [--out results/benchmarks] [--time-limit 7200] [--anew]
 
 Every analysis has a process and a thread of its own; its figures are kept in elements/ in the
 folder of --out, so that a command that is repeated goes on where it was. Give nothing else to do
@@ -34,6 +34,9 @@ from pagd.errors import InputError
 
 _SECTION = "elements"
 
+#: Families with a mesh that is halved for the limit, and its usual size in mm.
+_HALVED = {"tetrahedra": 4.0, "hexahedra": 6.0}
+
 
 def main() -> None:
     """Run what is not kept yet, and print the section or write it to the page."""
@@ -63,15 +66,17 @@ def main() -> None:
 def _check(options: argparse.Namespace) -> None:
     sizes = {key.replace("_", "-"): getattr(options, key) for key in elements.FAMILIES}
     must_be_positive({**sizes, "pressures": options.pressures, "order": options.order})
-    if options.halves < 0:
-        raise InputError(f"--halves = {options.halves:g} must be at least 0.")
+    for key in _HALVED:
+        if not (size := getattr(options, f"halved_{key}")) >= 0:
+            raise InputError(f"--halved-{key} = {size:g} must be at least 0.")
 
 
 def _cases(options: argparse.Namespace) -> list[Case]:
     designs = example_designs()
     sizes = {key: tuple(sorted(getattr(options, key), reverse=True)) for key in elements.FAMILIES}
+    halves = {key: size for key in _HALVED if (size := getattr(options, f"halved_{key}"))}
     return [
-        Case(designs[name], pressure, sizes, options.halves or None)
+        Case(designs[name], pressure, sizes, halves)
         for name in options.designs
         for pressure in options.pressures
     ]
@@ -97,17 +102,18 @@ def _parser() -> argparse.ArgumentParser:
     for key, sizes in (
         ("tetrahedra", [6.0, 4.0, 3.0]),
         ("element-pressure", [6.0, 4.0, 3.0]),
-        ("hexahedra", [8.0, 6.0, 4.0, 3.0, 2.0]),
+        ("hexahedra", [6.0, 4.0, 3.0, 2.0]),
     ):
         family = elements.FAMILIES[key.replace("-", "_")]
         _add_numbers(parser, f"--{key}", sizes, f"mesh sizes in mm, {family.name}")
-    add(
-        "--halves",
-        type=float,
-        default=4.0,
-        help="size of the mesh of tetrahedra that is solved with every edge halved too, for the "
-        "limit; 0: none (default: %(default)g)",
-    )
+    for key, size in _HALVED.items():
+        add(
+            f"--halved-{key}",
+            type=float,
+            default=size,
+            help=f"size of the mesh of {key} that is solved with every edge halved too, for the "
+            "limit; 0: none (default: %(default)g)",
+        )
     add("--order", type=float, default=EDGE_ORDER, help="of the error (default: %(default)g)")
     add_common(parser)
     return parser

@@ -1,14 +1,15 @@
 """Random designs through the whole chain: how they end, and what it takes.
 
-    python benchmarks/random_designs.py [--designs 200] [--seed 1] [--size 5] [--processes 2]
+    python benchmarks/random_designs.py [--designs 200] [--seed 1] [--size MM] [--processes 2]
         [--time-limit 1800] [--config JSON] [--out results/random_designs]
         [--error-designs 20] [--markdown FILE] [--page docs/performance.md] [--report-only]
 
 Each design has a process of its own. Repeating the command runs only what is not finished yet by
 stages of the same versions; designs of more than one commit are told in the report. To run all
 anew, give another folder. Written to the folder: report.json, with a row a design, and report.md.
-Meshers and elements are those of the configuration. --error-designs solves some designs at half
-the mesh size too, for the error of their tips. --page writes the section of costs.
+Meshers and elements are those of the configuration, and so is the mesh size unless --size gives
+one for all meshers. --error-designs solves some designs with every edge of the mesh halved too,
+for the error of their tips. --page writes the section of costs.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from robustness.machine import machine
 from robustness.page import as_markdown
 from robustness.processes import Ending, Task, run_tasks
 from robustness.results import Result, result_of
+from robustness.sizes import size_of, sized
 from robustness.study import Study
 from robustness.summary import summarize
 
@@ -39,7 +41,7 @@ from pagd import config as configuration
 from pagd.errors import InputError
 from pagd.files import write_text
 
-#: Designs that are solved at half the mesh size too, with --page.
+#: Designs that are solved with every edge of the mesh halved too, with --page.
 ERROR_DESIGNS = 20
 
 _SECTION = "random"
@@ -65,19 +67,20 @@ def main() -> None:
 
 def _study(options: argparse.Namespace) -> Study:
     for name in ("designs", "size", "processes", "time_limit"):
-        if not getattr(options, name) > 0:
+        if getattr(options, name) is not None and not getattr(options, name) > 0:
             raise InputError(f"--{name.replace('_', '-')} must be greater than 0.")
     if options.error_designs is not None and options.error_designs < 0:
         raise InputError("--error-designs must be at least 0.")
     if options.seed < 0:
         raise InputError("--seed must be at least 0.")
     config = configuration.load(options.config)
-    config["mesh"]["size_mm"] = options.size
+    if options.size is not None:
+        config = sized(config, options.size)
     return Study(options.out, drawn_designs(options.designs, options.seed, config), config)
 
 
 def _error_designs(options: argparse.Namespace) -> int:
-    """How many designs are solved at half the mesh size too."""
+    """How many designs are solved with every edge of the mesh halved too."""
     if options.error_designs is None:
         return ERROR_DESIGNS if options.page else 0
     return int(options.error_designs)
@@ -127,7 +130,7 @@ def _report(study: Study, finer: Study, options: argparse.Namespace) -> None:
         "study": {
             "designs": options.designs,
             "seed": options.seed,
-            "size_mm": options.size,
+            "size_mm": size_of(study.config),
             "time_limit_s": options.time_limit,
             "config": study.config,
         },
@@ -186,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("--designs", type=int, default=200, help="how many (default: %(default)s)")
     add("--seed", type=int, default=1, help="of the drawing (default: %(default)s)")
-    add("--size", type=float, default=5.0, help="mesh size in mm (default: %(default)g)")
+    add("--size", type=float, help="mesh size in mm (default: those of the configuration)")
     add("--processes", type=int, default=2, help="designs at a time (default: %(default)s)")
     add(
         "--time-limit",
@@ -195,7 +198,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         help="a design that takes longer is ended and counts as failed (default: %(default)g)",
     )
-    add("--config", help="file or JSON text; --size takes the place of mesh.size_mm")
+    add("--config", help="file or JSON text; --size takes the place of its sizes")
     add(
         "--out",
         type=Path,
@@ -206,7 +209,7 @@ def _parser() -> argparse.ArgumentParser:
         "--error-designs",
         type=int,
         metavar="N",
-        help="solve so many designs at half the mesh size too "
+        help="solve so many designs with every edge of the mesh halved too "
         f"(default: {ERROR_DESIGNS} with --page, else none)",
     )
     add("--markdown", type=Path, help="file that the report is written to as well")

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from robustness.processes import Ending, Task, run_tasks
+from robustness.sizes import size_of
 from robustness.study import commit, made_of
 from robustness.timings import cpu_of_process
 
@@ -107,7 +108,7 @@ def throughput_of(
 def text_of(found: Mapping[Crew, Throughput], design: str, config: Mapping[str, Any]) -> str:
     """Return the section without its first lines."""
     introduction = (
-        f"The {design} example, mesh size {config['mesh']['size_mm']:g} mm, free actuation to "
+        f"The {design} example, mesh size {size_of(config):g} mm, free actuation to "
         f"{config['solve']['maximum_pressure_kPa']:g} kPa, over and over: each design through the "
         "whole chain in a process of its own. Efficiency: designs an hour, by those of one "
         "process with one thread, by cores."

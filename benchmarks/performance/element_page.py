@@ -37,11 +37,11 @@ def _introduction(order: float) -> str:
     return (
         "Free actuation with contact, one thread. The error is the distance of the tip from its "
         "limit, by the limit's displacement. Limits are extrapolated (Richardson) with the order "
-        f"{order:g}, that of the inward edges of the cavity: of the two finest meshes of "
-        "hexahedra, and of a mesh of tetrahedra and its halves. Element sizes enter by the "
-        "unknowns, number to the −1/3. The rows of two sizes are limits too, of neighbouring "
-        "meshes, at the cost of both. A mesh that a limit is of has an error by construction: its "
-        "distance from the other limit is what tells."
+        f"{order:g}, that of the inward edges of the cavity, of a mesh and its halves: the same "
+        "elements with every edge halved, eight times as many. The rows of two sizes are limits "
+        "too, at the cost of both meshes; element sizes enter by the unknowns, number to the "
+        "−1/3, since walls have at least one layer of elements whatever the size. A mesh that a "
+        "limit is of has an error by construction: its distance from the other limit tells more."
     )
 
 

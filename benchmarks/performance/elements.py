@@ -39,14 +39,14 @@ FAMILIES: Final[Mapping[str, Family]] = {
 class Case:
     """A design, a last pressure, and the sizes (mm) of each family, coarse to fine.
 
-    ``halves``: a mesh of tetrahedra of that size is solved too with every edge halved; that and
-    the two finest meshes of hexahedra are what the limits are of.
+    ``halves``: by family, a size whose mesh is solved with every edge halved too: the limit of
+    these two, which differ by nothing but their size, is what errors are measured from.
     """
 
     named: NamedDesign
     pressure_kPa: float
     sizes: Mapping[str, tuple[float, ...]]
-    halves: float | None
+    halves: Mapping[str, float]
 
     @property
     def title(self) -> str:
@@ -89,12 +89,12 @@ def runs_of(case: Case, config: str | None) -> dict[tuple[str, str], Run]:
     for family, sizes in case.sizes.items():
         for size in sizes:
             found[family, f"{size:g}"] = _run(case, family, size, config)
-    if case.halves is not None:
+    for family, size in case.halves.items():
         # The mesh that is halved is solved as it is too: a limit needs both.
-        whole = _run(case, "tetrahedra", case.halves, config)
-        found["tetrahedra", f"{case.halves:g}"] = whole
+        whole = _run(case, family, size, config)
+        found[family, f"{size:g}"] = whole
         halves = Run(f"{whole.label}-halved", whole.named, whole.config, halvings=1)
-        found["tetrahedra", _halved(case.halves)] = halves
+        found[family, _halved(size)] = halves
     return found
 
 
@@ -117,25 +117,25 @@ def points_of(
         single = [_point(key, name, one) for (of, name), one in measured.items() if of == key]
         points += single
         plain = [point for point in single if "halved" not in point.name]
-        if family.is_extrapolated:
-            points += [_limit(pair, order) for pair in pairwise(_descending(plain))]
+        pairs = [*pairwise(_descending(plain)), *_halves_of(case, single, key)]
+        points += [_limit(pair, order) for pair in pairs if family.is_extrapolated]
     return points
 
 
 def reference_of(case: Case, points: Sequence[Point], family: str, order: float) -> Point | None:
-    """Return the limit by the finest meshes of a family; None where these are not known.
+    """Return the limit of a family, of a mesh and its halves; None where these are not known."""
+    pairs = _halves_of(case, [point for point in points if not point.is_limit], family)
+    limits = [_limit(pair, order) for pair in pairs]
+    return limits[0] if limits and limits[0].tip is not None else None
 
-    Of the tetrahedra it is that of a mesh and its halves, which differ by nothing but their size.
-    """
-    single = [p for p in points if p.family == family and not p.is_limit]
-    if family == "tetrahedra" and case.halves is not None:
-        names = (f"{case.halves:g}", _halved(case.halves))
-        pair = [point for name in names for point in single if point.name == name]
-    else:
-        pair = _descending(single)[-2:]
-    if len(pair) < 2 or any(point.tip is None for point in pair):
-        return None
-    return _limit((pair[0], pair[1]), order)
+
+def _halves_of(case: Case, single: Sequence[Point], family: str) -> list[tuple[Point, Point]]:
+    """The mesh of a family that is halved, with its halves; empty where there is none."""
+    if family not in case.halves:
+        return []
+    by_name = {point.name: point for point in single if point.family == family}
+    size = case.halves[family]
+    return [(by_name[f"{size:g}"], by_name[_halved(size)])]
 
 
 def _run(case: Case, key: str, size: float, config: str | None) -> Run:

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from robustness.sizes import sized
+
 from pagd import config as configuration
 from pagd.catalogue import NamedDesign, read_designs
 from pagd.errors import InputError
@@ -105,14 +107,13 @@ def free_config(
     source
         Configuration that the rest is taken from: file, JSON text, or None for all defaults.
     size_mm
-        Mesh size.
+        Mesh size, of whichever mesher.
     pressure_kPa
         Last pressure.
     step_kPa
         Pressure between recorded states; the last pressure alone unless given.
     """
-    config = configuration.load(source)
-    config["mesh"]["size_mm"] = size_mm
+    config = sized(configuration.load(source), size_mm)
     config["solve"] |= {
         "maximum_pressure_kPa": pressure_kPa,
         "recorded_step_kPa": step_kPa or pressure_kPa,

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from robustness.processes import Ending, Task, run_tasks
+from robustness.sizes import sized
 from robustness.study import commit, made_of
 
 from pagd.catalogue import NamedDesign
@@ -44,7 +45,7 @@ class Run:
 
     def made_of(self) -> dict[str, Any]:
         """Return all that its figures depend on, ready for JSON."""
-        return made_of(self.named, self.config) | {"halvings": self.halvings}
+        return made_of(self.named, self.config, self.halvings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +190,7 @@ def _kind(run: Run) -> tuple[str, ...]:
 
 def _coarse(config: Mapping[str, Any]) -> dict[str, Any]:
     solve = config["solve"] | {"maximum_pressure_kPa": 1.0, "recorded_step_kPa": 1.0}
-    return {**config, "mesh": config["mesh"] | {"size_mm": _WARM_UP_MM}, "solve": solve}
+    return sized(config, _WARM_UP_MM) | {"solve": solve}
 
 
 def _told(run: Run, found: Measurement) -> str:

@@ -109,12 +109,11 @@ def _errors(report: Mapping[str, Any]) -> list[str]:
     median, p90 = np.percentile(found, (50, 90))
     within = sum(error <= ALLOWED_ERROR for error in found)
     text = (
-        f"Discretisation error of the tip, from {len(errors)} of the designs at half the mesh "
-        f"size too: median {percent(float(median))}, 90th percentile {percent(float(p90))}, "
-        f"largest {percent(max(found))}; at most {percent(ALLOWED_ERROR, 0)} in {within} of "
-        f"{len(errors)}. Both tips at the last pressure that both meshes reach; the difference "
-        "goes into an error by the order 1.09 of the inward edges of the cavity, with the element "
-        "sizes that the unknowns tell."
+        f"Discretisation error of the tip, from {len(errors)} of the designs with every "
+        f"edge of the mesh halved too: median {percent(float(median))}, 90th percentile "
+        f"{percent(float(p90))}, largest {percent(max(found))}; at most "
+        f"{percent(ALLOWED_ERROR, 0)} in {within} of {len(errors)}. Both tips at the last pressure that both meshes reach; the difference "
+        "goes into an error by the order 1.09 of the inward edges of the cavity."
     )
     rows = [
         [
@@ -128,5 +127,5 @@ def _errors(report: Mapping[str, Any]) -> list[str]:
         ]
         for one in errors
     ]
-    headings = ["design", "mode", "kPa", "unknowns", "at half the size", "difference", "error"]
+    headings = ["design", "mode", "kPa", "unknowns", "halved", "difference", "error"]
     return [wrapped(text), table(headings, rows)]

@@ -33,12 +33,14 @@ class Study:
     """Random designs, the configuration they run with, and the folder of their results.
 
     Under ``out`` every design has a folder ``designs/NAME`` with its stages, the output of its
-    process, and ``run.json``: what was asked for and how the process ended.
+    process, and ``run.json``: what was asked for and how the process ended. ``halvings``: how
+    often every edge of the meshes is halved before they are solved.
     """
 
     out: Path
     designs: Sequence[NamedDesign]
     config: Mapping[str, Any]
+    halvings: int = 0
 
     def folder(self, named: NamedDesign) -> Path:
         """Folder of a design."""
@@ -57,7 +59,7 @@ class Study:
             run: dict[str, Any] = json.loads((self.folder(named) / _RUN).read_text("utf-8"))
         except (OSError, ValueError):
             return None
-        if run.get("made_of") != made_of(named, self.config) or run.get("end") in (None, _STARTED):
+        if run.get("made_of") != self._made_of(named) or run.get("end") in (None, _STARTED):
             return None
         return None if run["end"] == "finished" and not self._is_complete(named) else run
 
@@ -80,7 +82,12 @@ class Study:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         self._note(named, {"end": _STARTED})
-        task = {"design": json.loads(named.as_json()), "out": str(folder), "config": self.config}
+        task = {
+            "design": json.loads(named.as_json()),
+            "out": str(folder),
+            "config": self.config,
+            "halvings": self.halvings,
+        }
         return Task(named.name, json.dumps(task), folder / "output.txt")
 
     def end(self, named: NamedDesign, ending: Ending) -> dict[str, Any]:
@@ -93,10 +100,12 @@ class Study:
         return how
 
     def _note(self, named: NamedDesign, how: Mapping[str, Any]) -> None:
-        text = json.dumps(
-            {"made_of": made_of(named, self.config), **how}, indent=2, ensure_ascii=False
-        )
+        content = {"made_of": self._made_of(named), **how}
+        text = json.dumps(content, indent=2, ensure_ascii=False)
         write_text(self.folder(named) / _RUN, text + "\n")
+
+    def _made_of(self, named: NamedDesign) -> dict[str, Any]:
+        return made_of(named, self.config, self.halvings)
 
     def _is_complete(self, named: NamedDesign) -> bool:
         try:
@@ -106,13 +115,14 @@ class Study:
         return all(record.design_id == named.name for record in records)
 
 
-def made_of(named: NamedDesign, config: Mapping[str, Any]) -> dict[str, Any]:
+def made_of(named: NamedDesign, config: Mapping[str, Any], halvings: int = 0) -> dict[str, Any]:
     """Return all that the result of a design depends on, as it reads in a file of JSON."""
     sections = {stage: part(config, stage) for stage in STAGES}
     file = str(material_file(config))
     ingredients = {
         "design": named.as_json(),
         "config": sections,
+        "halvings": halvings,
         "material": material_as_json(file, config["material"], "material"),
         "paper": material_as_json(file, config["paper"], "paper"),
         "versions": {"pagd": __version__, **{s: STAGE_VERSIONS[s] for s in STAGES}},

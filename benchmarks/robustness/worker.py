@@ -24,7 +24,7 @@ def run_chain(task: dict[str, Any]) -> None:
     """Run geometry, repair, mesh, solve and metrics of a task's design, without pictures.
 
     With ``halvings`` in the task, every edge of the mesh is halved so many times before it is
-    solved, by what the verification refines its meshes with.
+    solved.
     """
     from pagd.catalogue import design_from
     from pagd.stages import geometry, mesh, metrics, repair, solve
@@ -45,11 +45,8 @@ def run_chain(task: dict[str, Any]) -> None:
 
 
 def _halve(file: Path) -> None:
-    from pagd.mesh.msh import read_msh, write_msh
-
-    sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "verification"))
-    refinement = importlib.import_module("refinement")
-    write_msh(refinement.halved(read_msh(file)), file)
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+    importlib.import_module("performance.halving").halve(file)
 
 
 def _cpu_seconds() -> float:

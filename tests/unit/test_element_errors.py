@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,12 @@ import pytest
 
 from pagd import config as configuration
 from pagd.catalogue import NamedDesign
+from pagd.design import Channel
 from pagd.errors import Status
+from pagd.mesh.blocks import check_blocks
+from pagd.mesh.chamber_row import chamber_row
+from pagd.mesh.checks import check_actuator
+from pagd.mesh.types import FloatArray, Mesh, corner_volumes
 from pagd.record import Record, write_record
 from pagd.tables import MEASURES, write_table
 
@@ -22,6 +29,7 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import elements as command  # noqa: E402
 from performance.element_page import text_of  # noqa: E402
 from performance.elements import Case, points_of, reference_of, runs_of  # noqa: E402
+from performance.halving import halved  # noqa: E402
 from performance.options import example_designs  # noqa: E402
 from performance.runs import Measurement  # noqa: E402
 from robustness.costs import COST_KEYS, as_section  # noqa: E402
@@ -35,8 +43,11 @@ SIZES = {"tetrahedra": (4.0, 2.0), "element_pressure": (4.0,), "hexahedra": (8.0
 LIMIT = np.array([-2.0, 0.0, -20.0])
 
 
-def case(halves: float | None = 4.0) -> Case:
-    return Case(example_designs()["bending"], 10.0, SIZES, halves)
+HALVES = {"tetrahedra": 4.0, "hexahedra": 8.0}
+
+
+def case(halves: dict[str, float] | None = None) -> Case:
+    return Case(example_designs()["bending"], 10.0, SIZES, HALVES if halves is None else halves)
 
 
 def measurement(size: float, slope: float, **differs: Any) -> Measurement:
@@ -57,17 +68,20 @@ def measured() -> dict[tuple[str, str], Measurement]:
     found = {("hexahedra", f"{h:g}"): measurement(h, 0.01) for h in (8.0, 4.0, 2.0)}
     found |= {("tetrahedra", f"{h:g}"): measurement(h, 0.03) for h in (4.0, 2.0)}
     found["tetrahedra", "4 halved"] = measurement(2.0, 0.03)
+    found["hexahedra", "8 halved"] = measurement(4.0, 0.01)
     found["element_pressure", "4"] = measurement(4.0, -0.02)
     return found
 
 
 def test_every_mesh_is_run_with_its_mesher_and_element_and_the_halved_one_whole_too() -> None:
-    runs = runs_of(Case(example_designs()["bending"], 10.0, SIZES, 3.0), '{"paper": "paper"}')
+    runs = runs_of(
+        Case(example_designs()["bending"], 10.0, SIZES, {"tetrahedra": 3.0}), '{"paper": "paper"}'
+    )
     made = {
         key: (run.config["mesh"], run.config["solve"], run.halvings) for key, run in runs.items()
     }
     mesh, solve, _ = made["hexahedra", "8"]
-    assert (mesh["meshers"], mesh["size_mm"], solve["element"]) == (
+    assert (mesh["meshers"], mesh["block_mm"], solve["element"]) == (
         *(["structured"], 8.0, "hexahedron"),
     )
     mesh, solve, halvings = made["element_pressure", "4"]
@@ -81,11 +95,12 @@ def test_limits_are_exact_where_the_error_has_the_order() -> None:
     points = points_of(case(), measured(), ORDER)
     limits = [point for point in points if point.is_limit]
     assert [(point.family, point.name) for point in limits] == [
-        *(("tetrahedra", "4 and 2"), ("hexahedra", "8 and 4"), ("hexahedra", "4 and 2")),
+        *(("tetrahedra", "4 and 2"), ("tetrahedra", "4 and 4 halved")),
+        *(("hexahedra", "8 and 4"), ("hexahedra", "4 and 2"), ("hexahedra", "8 and 8 halved")),
     ]
     for point in limits:
         assert point.tip == pytest.approx(LIMIT)
-    assert limits[-1].all_s == pytest.approx(2 + 1 + 2 + 8)
+    assert limits[3].all_s == pytest.approx(2 + 1 + 2 + 8)
     for family in ("hexahedra", "tetrahedra"):
         reference = reference_of(case(), points, family, ORDER)
         assert reference is not None
@@ -99,9 +114,13 @@ def test_a_limit_needs_both_meshes_and_one_that_is_finer() -> None:
     same = measured()["hexahedra", "4"]
     for one in (lost, measured() | {("hexahedra", "2"): same}):
         points = points_of(case(), one, ORDER)
-        last = points[-1]
-        assert (last.name, last.tip, bool(last.trouble)) == ("4 and 2", None, True)
-    assert reference_of(case(None), points_of(case(), lost, ORDER), "hexahedra", ORDER) is None
+        limit = points[-2]
+        assert (limit.name, limit.tip, bool(limit.trouble)) == ("4 and 2", None, True)
+    points = points_of(case({}), measured(), ORDER)
+    assert reference_of(case({}), points, "hexahedra", ORDER) is None
+    lost["hexahedra", "8 halved"] = lost["hexahedra", "2"]
+    points = points_of(case(), lost, ORDER)
+    assert reference_of(case(), points, "hexahedra", ORDER) is None
 
 
 def test_the_section_tells_errors_products_and_seconds_at_the_wanted_error() -> None:
@@ -116,13 +135,13 @@ def test_the_section_tells_errors_products_and_seconds_at_the_wanted_error() -> 
     # 3 % lies between 4.5 % at 4 mm (3 s) and 2.1 % at 2 mm (10 s).
     assert 3.0 < float(rows["hexahedra, 27 nodes"]) < 10.0
     assert rows["tetrahedra P2–P1"] == "> 10.0"
-    # The finest limit is what errors are measured from: it has none.
+    # The limit that errors are measured from has none: 8 and 4 mm are the cheapest with one.
     assert rows["hexahedra, 27 nodes, limits"] == "< 5.1"
 
 
 def test_without_hexahedra_errors_are_to_the_limit_of_tetrahedra_and_the_reason_is_told() -> None:
     found = measured()
-    for size in ("8", "4", "2"):
+    for size in ("8", "4", "2", "8 halved"):
         found["hexahedra", size] = Measurement("crashed", "There is no such mesher.", 1.0, None, {})
     text = text_of({case(): points_of(case(), found, ORDER)}, ORDER)
     assert "There is no limit by hexahedra." in text
@@ -136,7 +155,7 @@ def test_without_hexahedra_errors_are_to_the_limit_of_tetrahedra_and_the_reason_
     [
         (["--tetrahedra", "0"], "--tetrahedra = 0 must be greater than 0"),
         (["--pressures", "-5"], "--pressures = -5 must be greater than 0"),
-        (["--halves", "-1"], "--halves = -1 must be at least 0"),
+        (["--halved-hexahedra", "-1"], "--halved-hexahedra = -1 must be at least 0"),
         (["--page", "absent.md"], "absent.md: there is no such file"),
     ],
 )
@@ -160,8 +179,17 @@ def test_a_mesh_and_its_halves_are_solved_and_the_halves_are_nearer(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=os.pathsep)
-    words = ["--designs", "bending", "--pressures", "0.5", "--tetrahedra", "5", "--halves", "5"]
-    words += ["--hexahedra", "--element-pressure", "--out", str(tmp_path)]
+    words = ["--designs", "bending", "--pressures", "0.5", "--tetrahedra", "5"]
+    words += [
+        "--halved-tetrahedra",
+        "5",
+        "--halved-hexahedra",
+        "0",
+        "--hexahedra",
+        "--element-pressure",
+        "--out",
+        str(tmp_path),
+    ]
     monkeypatch.setattr(sys, "argv", ["elements.py", *words])
     command.main()
     printed = capsys.readouterr().out
@@ -190,12 +218,14 @@ def test_designs_for_errors_are_spread_and_of_both_modes(of: int, count: int) ->
     assert every_kth(drawn, 0) == []
 
 
-def test_the_finer_study_has_half_the_size_and_no_blocked_force(tmp_path: Path) -> None:
+def test_the_finer_study_has_halved_edges_and_no_blocked_force(tmp_path: Path) -> None:
     finer = finer_study(Study(tmp_path, designs(4), CONFIG), 2)
-    assert finer.config["mesh"]["size_mm"] == CONFIG["mesh"]["size_mm"] / 2
+    assert finer.halvings == 1
+    assert json.loads(finer.start(finer.designs[0]).line)["halvings"] == 1
+    assert finer.config["mesh"] == CONFIG["mesh"]
     assert finer.config["solve"]["blocked_force"] == "none"
     assert CONFIG["solve"]["blocked_force"] != "none"
-    assert finer.folder(finer.designs[0]).is_relative_to(tmp_path / "half_size")
+    assert finer.folder(finer.designs[0]).is_relative_to(tmp_path / "halved")
 
 
 def leave(folder: Path, unknowns: int, tips: list[tuple[float, float]]) -> None:
@@ -222,7 +252,7 @@ def leave(folder: Path, unknowns: int, tips: list[tuple[float, float]]) -> None:
 
 
 def test_the_error_of_a_tip_is_at_the_last_pressure_of_both_meshes(tmp_path: Path) -> None:
-    # Sizes 2 : 1 by the unknowns; off by 8 % and by half of it to the order, of 10 mm at 20 kPa.
+    # Off by 8 % and by half of it to the order, of 10 mm at 20 kPa.
     fine = -1 - 10 * (1 - 0.08 / 2**ORDER)
     leave(tmp_path / "a", 1000, [(0, -1), (10, -5.0), (20, -1 - 9.2), (25, -12.0)])
     leave(tmp_path / "b", 8000, [(0, -1), (10, -5.2), (20, fine), (24, -13.0)])
@@ -233,11 +263,10 @@ def test_the_error_of_a_tip_is_at_the_last_pressure_of_both_meshes(tmp_path: Pat
     assert found.difference == pytest.approx(0.08 * (1 - 2**-ORDER))
 
 
-def test_there_is_no_error_without_two_meshes_one_of_them_finer(tmp_path: Path) -> None:
+def test_there_is_no_error_without_a_common_pressure(tmp_path: Path) -> None:
     leave(tmp_path / "a", 1000, [(0, -1), (10, -5.0)])
-    leave(tmp_path / "same", 1000, [(0, -1), (10, -5.0)])
     leave(tmp_path / "early", 8000, [(0, -1), (4, -2.0)])
-    for other in ("same", "early", "absent"):
+    for other in ("early", "absent"):
         assert tip_error(designs(1)[0], tmp_path / "a", tmp_path / other) is None
 
 
@@ -290,3 +319,29 @@ def test_errors_of_tips_are_told_with_how_many_are_small_enough() -> None:
     text = " ".join(as_section(report(errors), [costs()]).split())
     assert "median 2.0 %, 90th percentile 4.4 %, largest 5.0 %; at most 3 % in 2 of 3." in text
     assert "| r2 | bending | 50 | 1,000 | 8,000 | 2.50 % | 5.00 % |" in text
+
+
+@pytest.mark.parametrize("name", ["bending", "mixed"])
+def test_halves_of_blocks_are_blocks_and_fill_the_same_space(name: str) -> None:
+    channel = Channel(width=2.0, height=2.0, roof=1.5)
+    design = replace(example_designs()[name].design, N=3)
+    mesh = chamber_row(design, channel, 8.0, half=name == "bending")
+    halves = halved(mesh)
+    halves.check()
+    check_blocks(halves)
+    check_actuator(halves)
+    assert (halves.hexahedra, halves.wedges) == (8 * mesh.hexahedra, 8 * mesh.wedges)
+    volumes = [corner_volumes(one.points, one.tets) for one in (mesh, halves)]
+    assert volumes[1].min() > 0
+    assert volumes[1].sum() == pytest.approx(volumes[0].sum())
+    for surface, faces in mesh.surfaces.items():
+        assert len(halves.surfaces[surface]) == 4 * len(faces)
+        assert areas(halves, surface).sum() == pytest.approx(areas(mesh, surface).sum())
+    # Every node of the mesh is one of its halves: these refine it.
+    places = {tuple(point) for point in halves.points.round(6).tolist()}
+    assert {tuple(point) for point in mesh.points.round(6).tolist()} <= places
+
+
+def areas(mesh: Mesh, surface: str) -> FloatArray:
+    a, b, c = (mesh.points[mesh.surfaces[surface][:, k]] for k in range(3))
+    return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)

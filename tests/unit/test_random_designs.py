@@ -468,7 +468,7 @@ def test_without_blocked_force_the_page_has_no_share_of_it() -> None:
     ("options", "printed"),
     [
         ([], ""),
-        (["--designs", "200", "--size", "5", "--processes", "1", "--out", "elsewhere"], ""),
+        (["--designs", "200", "--processes", "1", "--out", "elsewhere"], ""),
         (
             ["--designs", "20", "--seed", "7", "--size", "2.5", "--time-limit", "60"],
             " --designs 20 --seed 7 --size 2.5 --time-limit 60",
