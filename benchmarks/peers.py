@@ -86,8 +86,9 @@ def _same_mesh(options: argparse.Namespace) -> None:
 
 
 def _equal_error(options: argparse.Namespace) -> None:
-    rows = list(_study(options).equal_error(options.finer))
-    text = page.equal_error_text(command_of(options), rows, options.threads)
+    study = _study(options)
+    rows = list(study.equal_error(options.finer))
+    text = page.equal_error_text(command_of(options), rows, options.threads, study.exact())
     publish(options.page, "peers-equal-error", text)
     _write(options.out, [asdict(row) for row in rows])
 

@@ -11,6 +11,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from pagd.cli.client import SERVER
+
 __all__ = ["Ended", "run_timed", "thread_settings"]
 
 _LOOK_EVERY_S = 0.01
@@ -70,7 +72,7 @@ def run_timed(
         process = subprocess.Popen(
             command,
             cwd=folder,
-            env=os.environ | thread_settings(threads),
+            env=_environment(threads),
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,
@@ -97,6 +99,12 @@ def run_timed(
     process.returncode = os.waitstatus_to_exitcode(status)
     code = None if limit_reached else process.returncode
     return Ended(code, seconds, usage.ru_utime + usage.ru_stime, progress)
+
+
+def _environment(threads: int) -> dict[str, str]:
+    """That of this process, without a server that would do the work in place of the child."""
+    own = {name: value for name, value in os.environ.items() if name != SERVER}
+    return own | thread_settings(threads)
 
 
 def _note(progress: list[tuple[float, float]], seconds: float, pressure: float) -> None:

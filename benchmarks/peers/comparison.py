@@ -68,8 +68,8 @@ class EqualError:
     Attributes
     ----------
     ratio
-        Of its time to ours: of the first mesh that is as good, or at least that of the last one
-        that was tried; None where it never came to the last pressure, nor to its time limit.
+        Of its time to ours: of the first mesh that is as good, or at least that of the slowest one
+        that was tried; None where it never came to the pressure, nor to its time limit.
     estimate
         Where no mesh was as good: extrapolated by error and time of its last two meshes; None
         where that is not possible.
@@ -80,31 +80,37 @@ class EqualError:
 
 
 def equal_error(
-    ours: Solved, error: float, theirs: Sequence[Solved], errors: Sequence[float | None]
+    seconds: float, error: float, tried: Sequence[tuple[float, float | None]]
 ) -> EqualError:
-    """Find what another program takes on finer and finer meshes to be as good as ours."""
-    pairs = [
-        (run, found)
-        for run, found in zip(theirs, errors, strict=True)
-        if run.is_complete and found is not None
-    ]
-    for run, found in pairs:
+    """Find what another program takes on finer and finer meshes to be as good as ours.
+
+    Parameters
+    ----------
+    seconds, error
+        Of pagd.
+    tried
+        Seconds and error of each mesh, the coarsest first; the error is None, and the seconds are
+        those of the time limit, where it was not known to get so far.
+    """
+    pairs = [(time, found) for time, found in tried if found is not None]
+    for time, found in pairs:
         if found <= error:
-            return EqualError(Ratio(run.wall_s / ours.wall_s), None)
-    tried = [run.wall_s for run in theirs if run.is_complete or run.status == "time_limit"]
-    ratio = Ratio(max(tried) / ours.wall_s, at_least=True) if tried else None
-    return EqualError(ratio, _estimate(ours, error, pairs))
+            return EqualError(Ratio(time / seconds), None)
+    slowest = max((time for time, _ in tried), default=None)
+    ratio = None if slowest is None else Ratio(slowest / seconds, at_least=True)
+    estimate = _seconds_at(error, pairs)
+    return EqualError(ratio, None if estimate is None else estimate / seconds)
 
 
-def _estimate(ours: Solved, error: float, pairs: Sequence[tuple[Solved, float]]) -> float | None:
-    """The ratio at our error, by a power law between time and error."""
+def _seconds_at(error: float, pairs: Sequence[tuple[float, float]]) -> float | None:
+    """Seconds at a smaller error, by the power law of the last two."""
     if len(pairs) < 2:
         return None
-    (coarse, large), (fine, small) = pairs[-2:]
-    if not (0 < small < large and coarse.wall_s < fine.wall_s and error > 0):
+    (short, large), (long, small) = pairs[-2:]
+    if not (0 < small < large and short < long and error > 0):
         return None
-    power = log(fine.wall_s / coarse.wall_s) / log(large / small)
-    return fine.wall_s / ours.wall_s * exp(power * log(small / error))
+    power = log(long / short) / log(large / small)
+    return long * exp(power * log(small / error))
 
 
 def median_of(runs: Sequence[Solved]) -> Solved:

@@ -15,11 +15,22 @@ from pagd.errors import InputError
 from pagd.files import write_text
 from peers.solved import Solved
 
-__all__ = ["FILE_NAME", "ORDER", "Converged", "extrapolated", "read_converged", "write_converged"]
+__all__ = [
+    "FEWEST_MESHES",
+    "FILE_NAME",
+    "ORDER",
+    "Converged",
+    "extrapolated",
+    "read_converged",
+    "write_converged",
+]
 
 FloatArray = NDArray[np.float64]
 
 FILE_NAME = "converged_tips.json"
+
+#: With fewer meshes nothing would show how well they follow the order.
+FEWEST_MESHES = 3
 
 #: Order of the error in the size of the elements: near inward edges of 90°, such as those of the
 #: cavities, the displacement goes with the distance to the power 0.5445 (Williams 1952), and a
@@ -90,10 +101,10 @@ def extrapolated(
     Raises
     ------
     InputError
-        If there are fewer than two meshes, or they have no pressure in common.
+        If there are fewer than three meshes, or they have no pressure in common.
     """
-    if len(runs) < 2:
-        raise InputError("--sizes: must name at least two meshes to extrapolate over.")
+    if len(runs) < FEWEST_MESHES:
+        raise InputError(f"{design}: there must be at least {FEWEST_MESHES} meshes.")
     common = sorted(set.intersection(*({p for p, _ in run.tips} for run in runs)))
     if not common:
         raise InputError(f"{design}: the meshes reached no recorded pressure in common.")

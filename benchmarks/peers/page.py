@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from performance.origin import LIBRARIES, origin_lines
 from performance.page import table, wrapped
 
 from peers.bodies import Body
-from peers.comparison import Comparison
+from peers.comparison import Comparison, Ratio
 from peers.converged import Converged
 from peers.solved import Solved
 from peers.studies import EqualErrorRow, SameMeshRow
@@ -47,14 +48,27 @@ def same_mesh_text(
     """Return the section of both programs on the same meshes."""
     lines = [line for row in rows for line in _same_mesh_lines(row)]
     notes = [note for row in rows for note in _notes(row)]
-    missing = sorted({row.body.design for row in rows} - set(exact))
-    if missing:
-        notes.append(
-            f"- Errors of {', '.join(missing)} are not known: `python benchmarks/peers.py "
-            "converged` computes the mesh-converged tip."
-        )
+    notes += _converged_notes(dict.fromkeys(row.body.design for row in rows), exact)
     runs = [run for row in rows for run in (row.ours, row.theirs)]
     return _section(command, runs, threads, table(_HEADINGS, lines), notes)
+
+
+def _converged_notes(designs: Iterable[str], exact: Mapping[str, Converged]) -> Iterable[str]:
+    for design in designs:
+        if design not in exact:
+            yield (
+                f"- Errors of {design} are not known: `python benchmarks/peers.py converged` "
+                "computes the mesh-converged tip."
+            )
+            continue
+        tip = exact[design]
+        length = math.hypot(*tip.tip_mm[-1])
+        sizes = ", ".join(f"{mesh['size_mm']:g}" for mesh in tip.meshes)
+        yield (
+            f"- {design}: the mesh-converged tip moves by {_place(tip.tip_mm[-1])} mm at "
+            f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; by the two "
+            f"finest alone it would be {_percent(tip.spread_mm[-1] / length)} off."
+        )
 
 
 def _same_mesh_lines(row: SameMeshRow) -> Iterable[list[str]]:
@@ -100,15 +114,18 @@ def _notes(row: SameMeshRow) -> Iterable[str]:
             yield text
 
 
-def equal_error_text(command: str, rows: Sequence[EqualErrorRow], threads: int) -> str:
+def equal_error_text(
+    command: str, rows: Sequence[EqualErrorRow], threads: int, exact: Mapping[str, Converged]
+) -> str:
     """Return the section of equal error: pagd on its mesh, CalculiX on finer and finer ones."""
     headings = ("example", "program", "tetrahedra", "kPa", "wall, s", "error", "times slower")
     lines, notes = [], []
     for row in rows:
         lines.append([*_short(row.body, row.ours), _percent(row.error), "1"])
         for body, run, error in row.finer:
-            lines.append([*_short(body, run), _percent(error), _slower(row.ours, run)])
+            lines.append([*_short(body, run), _percent(error), _slower(row, run)])
         notes += [_finding(row)]
+    notes += _converged_notes(dict.fromkeys(row.body.design for row in rows), exact)
     runs = [run for row in rows for run in (row.ours, *(run for _, run, _ in row.finer))]
     return _section(command, runs, threads, table(headings, lines), notes)
 
@@ -118,10 +135,11 @@ def _short(body: Body, run: Solved) -> list[str]:
     return [_named(body), run.program, f"{run.tets:,}", reached, f"{run.wall_s:.1f}"]
 
 
-def _slower(ours: Solved, run: Solved) -> str:
-    ratio = run.wall_s / ours.wall_s
-    more = "more than " if run.status == "time_limit" else ""
-    return f"{more}{ratio:.0f}" if run.is_complete or more else "–"
+def _slower(row: EqualErrorRow, run: Solved) -> str:
+    ratio = run.seconds_to(row.pressure_kPa) / row.ours.seconds_to(row.pressure_kPa)
+    if run.tip(row.pressure_kPa) is not None:
+        return str(Ratio(ratio))
+    return str(Ratio(ratio, at_least=True)) if run.status == "time_limit" else "–"
 
 
 def _finding(row: EqualErrorRow) -> str:
@@ -129,7 +147,7 @@ def _finding(row: EqualErrorRow) -> str:
     text = f"- {_named(row.body)}: at an error of {_percent(row.error)} at "
     text += f"{row.pressure_kPa:g} kPa, "
     if row.result.ratio is None:
-        return f"{text}nothing can be said: CalculiX did not come to the last pressure."
+        return f"{text}nothing can be said: CalculiX did not come so far."
     text += f"CalculiX takes **{row.result.ratio} times** as long"
     if not row.result.ratio.at_least:
         return f"{text}."

@@ -10,7 +10,7 @@ from pagd.errors import InputError
 from peers import calculix, ours
 from peers.bodies import Body, made
 from peers.comparison import Comparison, EqualError, compared, equal_error, median_of
-from peers.converged import Converged, extrapolated, read_converged, write_converged
+from peers.converged import FEWEST_MESHES, Converged, extrapolated, read_converged, write_converged
 from peers.kept import Keeper
 from peers.solved import Load, Solved
 
@@ -93,8 +93,18 @@ class Study:
         return calculix.solve(body, self.mesh(body), self.load, self.keeper())
 
     def converge(self, order: float) -> dict[str, Converged]:
-        """Extrapolate the tip of each design over its bodies, and write the file of tips."""
+        """Extrapolate the tip of each design over its bodies, and write the file of tips.
+
+        Raises
+        ------
+        InputError
+            If the bodies of a design are too few, or of several meshers.
+        """
         designs = dict.fromkeys(body.design for body in self.bodies)
+        if len({body.mesher for body in self.bodies}) > 1:
+            raise InputError("--mesher: must be one to extrapolate over meshes, not several.")
+        if len(self.bodies) < FEWEST_MESHES * len(designs):
+            raise InputError(f"--sizes: must be at least {FEWEST_MESHES} to extrapolate over.")
         tips = {}
         for design in designs:
             # Coarse to fine: what is missing in the end are the meshes that take longest.
@@ -128,13 +138,18 @@ class Study:
         """
         for body in self.bodies:
             exact, us = self._exact_of(body), self.ours(body)
-            pressure = us.last_recorded()
+            known = {p for p, _ in us.tips} & set(exact.pressure_kPa)
+            pressure = max(known, default=0.0)
             error = exact.error(us, pressure)
             if error is None:
-                raise InputError(f"{body.design}: {_how_to_converge(pressure)}")
+                raise InputError(f"{body.design}: {_how_to_converge(us.last_recorded())}")
             finer = list(self._finer(body, exact, error, pressure, finer_mm))
-            runs, errors = [run for _, run, _ in finer], [found for *_, found in finer]
-            result = equal_error(us, error, runs, errors)
+            tried = [
+                (run.seconds_to(pressure), found)
+                for _, run, found in finer
+                if found is not None or run.status == "time_limit"
+            ]
+            result = equal_error(us.seconds_to(pressure), error, tried)
             yield EqualErrorRow(body, us, error, pressure, finer, result)
 
     def _finer(

@@ -210,9 +210,18 @@ class TestConverged:
         ]
         assert extrapolated("bending", [4, 2, 1], runs).spread_mm[0] > 0.1
 
-    def test_one_mesh_is_not_enough(self) -> None:
-        with pytest.raises(InputError, match="at least two meshes"):
-            extrapolated("bending", [4], [PAGD])
+    def test_two_meshes_do_not_show_how_well_they_follow(self) -> None:
+        with pytest.raises(InputError, match="at least 3 meshes"):
+            extrapolated("bending", [4, 3], [PAGD, PAGD])
+
+    def test_bodies_that_cannot_be_extrapolated_over_are_refused_at_once(
+        self, tmp_path: Path
+    ) -> None:
+        meshers = [replace(BODY, mesher=name) for name in ("gmsh", "structured", "ftetwild")]
+        for bodies, key in ((meshers, "--mesher"), ([BODY, replace(BODY, size_mm=3.0)], "--sizes")):
+            with pytest.raises(InputError, match=key):
+                Study(folder=tmp_path, bodies=bodies, load=Load()).converge(ORDER)
+        assert not any(tmp_path.iterdir())
 
     def test_tips_join_those_of_other_designs(self, tmp_path: Path) -> None:
         assert read_converged(tmp_path) == {}
@@ -249,21 +258,18 @@ class TestComparison:
         assert nothing.errors == (pytest.approx(0.05), None)
 
     def test_equal_error_takes_the_first_mesh_that_is_as_good(self) -> None:
-        finer = [CCX, replace(CCX, wall_s=1000.0), replace(CCX, wall_s=4000.0)]
-        found = equal_error(PAGD, 0.05, finer, [0.2, 0.05, 0.01])
+        found = equal_error(4.0, 0.05, [(400.0, 0.2), (1000.0, 0.05), (4000.0, 0.01)])
         assert found.ratio == Ratio(250.0)
         assert found.estimate is None
 
     def test_equal_error_by_the_trend_where_no_mesh_is_as_good(self) -> None:
-        finer = [CCX, replace(CCX, wall_s=1600.0), replace(LATE, wall_s=3600.0)]
-        found = equal_error(PAGD, 0.05, finer, [0.4, 0.2, None])
+        found = equal_error(4.0, 0.05, [(400.0, 0.4), (1600.0, 0.2), (3600.0, None)])
         assert found.ratio == Ratio(900.0, at_least=True)
         # Half the error takes four times as long.
         assert found.estimate == pytest.approx(1600.0 * 16 / 4)
 
-    def test_nothing_is_said_of_failures(self) -> None:
-        failed = replace(LATE, status="not_converged")
-        assert equal_error(PAGD, 0.05, [failed], [None]).ratio is None
+    def test_nothing_is_said_of_nothing(self) -> None:
+        assert equal_error(4.0, 0.05, []).ratio is None
 
     def test_the_median_is_a_run(self) -> None:
         runs = [replace(PAGD, wall_s=s) for s in (5.0, 1.0, 3.0)]
@@ -292,11 +298,13 @@ class TestSections:
 
     def test_equal_error_says_bound_and_trend(self) -> None:
         finer = [CCX, replace(CCX, wall_s=1600.0)]
-        result = equal_error(PAGD, 0.05, finer, [0.4, 0.2])
+        result = equal_error(4.0, 0.05, [(400.0, 0.4), (1600.0, 0.2)])
         bodies = [BODY, replace(BODY, size_mm=3.0)]
         tried = list(zip(bodies, finer, [0.4, 0.2], strict=True))
         row = EqualErrorRow(BODY, PAGD, 0.05, 10.0, tried, result)
-        text = " ".join(page.equal_error_text("command", [row], 2).split())
+        exact = {"bending": replace(EXACT, spread_mm=[0.1, 0.2])}
+        text = " ".join(page.equal_error_text("command", [row], 2, exact).split())
+        assert "finest alone it would be 1.0 % off" in text
         assert "takes **more than 400 times** as long" in text
         assert "by the trend of its last two: 6,400 times" in text
 
