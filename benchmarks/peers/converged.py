@@ -101,10 +101,15 @@ def extrapolated(
     Raises
     ------
     InputError
-        If there are fewer than three meshes, or they have no pressure in common.
+        If there are fewer than three different meshes, or they have no pressure in common.
     """
-    if len(runs) < FEWEST_MESHES:
-        raise InputError(f"{design}: there must be at least {FEWEST_MESHES} meshes.")
+    different = len({run.tets for run in runs})
+    if different < FEWEST_MESHES:
+        told = ", ".join(f"{size:g}" for size in sizes_mm)
+        raise InputError(
+            f"{design}: {told} mm give {different} different meshes, but there must be at least "
+            f"{FEWEST_MESHES} meshes to extrapolate over."
+        )
     common = sorted(set.intersection(*({p for p, _ in run.tips} for run in runs)))
     if not common:
         raise InputError(f"{design}: the meshes reached no recorded pressure in common.")

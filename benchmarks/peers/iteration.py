@@ -179,8 +179,8 @@ def as_text(command: str, rows: Sequence[Row], options: argparse.Namespace) -> s
         "follower pressure, and the paper as a membrane, without pagd's stiffness of the sheet to "
         "bending; FElupe has P2–P0 as its nearly incompressible solid, condensed, follower "
         "pressure, the Yeoh law built on its neo-Hookean one, and no paper, so that pagd has none "
-        "beside it. Assembly is residual and tangent of the free unknowns; the solve is factorisation "
-        "and solution."
+        "beside it. Assembly is residual and tangent of the free unknowns; the solve is "
+        "factorisation and solution."
     )
     headings = [f"program, {'/'.join(map(str, options.threads))} threads", "element", "unknowns"]
     headings += ["assembly", "solve", "iteration", "first", "tip z, mm"]

@@ -212,7 +212,11 @@ class TestConverged:
 
     def test_two_meshes_do_not_show_how_well_they_follow(self) -> None:
         with pytest.raises(InputError, match="at least 3 meshes"):
-            extrapolated("bending", [4, 3], [PAGD, PAGD])
+            extrapolated("bending", [4, 3], [PAGD, replace(PAGD, tets=2000)])
+
+    def test_sizes_that_give_the_same_mesh_count_once(self) -> None:
+        with pytest.raises(InputError, match="6, 5, 4 mm give 1 different meshes"):
+            extrapolated("bending", [6, 5, 4], [PAGD, PAGD, PAGD])
 
     def test_bodies_that_cannot_be_extrapolated_over_are_refused_at_once(
         self, tmp_path: Path
