@@ -16,6 +16,7 @@ from pagd.fem.membrane import Membrane
 from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
 from pagd.fem.term import EnergyTerm
 from pagd.materials import Elastomer, Sheet
+from pagd.mesh.blocks import hexahedra, wedges
 from pagd.mesh.types import Mesh
 
 FloatArray = NDArray[np.float64]
@@ -45,10 +46,14 @@ class Body:
 
     Attributes
     ----------
+    solids
+        The elastomer, by the kinds of its elements.
     terms, size
         The energy terms and the number of unknowns, displacements (3 a node) first.
     fixed
         Which unknowns (size,) the clamp and the plane of symmetry hold.
+    element
+        The element of the elastomer, one of :data:`pagd.actuation.ELEMENTS` but ``auto``.
     copies
         2 for a half model, 1 for a whole one.
     contact
@@ -75,15 +80,16 @@ class Body:
         self.mesh, self.material = mesh, material
         self.nodes = len(mesh.points)
         self.copies = 2 if "symmetry" in mesh.surfaces else 1
-        self.solid = _solid(mesh, material, wanted.element)
+        self.element = _element(mesh, wanted.element)
+        self.solids = _solids(mesh, material, self.element)
         self.size = 3 * self.nodes
-        self.size += self.solid.pressures if isinstance(self.solid, TaylorHoodSolid) else 0
+        self.size += sum(s.pressures for s in self.solids if isinstance(s, TaylorHoodSolid))
         self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
         self.gravity = _gravity(mesh, material, wanted.gravity_m_s2)
         contact = _contact(mesh, law) if wanted.contact else None
         self.initial_gap = contact.gap_at_rest() if contact else np.inf
         self.contact = contact if np.isfinite(self.initial_gap) else None
-        terms: list[EnergyTerm] = [self.solid, self.pressure, *_paper_terms(mesh, paper)]
+        terms: list[EnergyTerm] = [*self.solids, self.pressure, *_paper_terms(mesh, paper)]
         terms += [term for term in (self.gravity, self.contact) if term is not None]
         self.terms = tuple(terms)
         self.fixed = self._fixed(mesh)
@@ -110,7 +116,7 @@ class Body:
     @property
     def solid_volume(self) -> float:
         """Volume of elastomer of the whole actuator, in mm³."""
-        return self.copies * float(self.solid.weights.sum())
+        return self.copies * float(sum(solid.weights.sum() for solid in self.solids))
 
 
 def normals_of(points: FloatArray, faces: IntArray) -> FloatArray:
@@ -120,12 +126,31 @@ def normals_of(points: FloatArray, faces: IntArray) -> FloatArray:
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-def _solid(mesh: Mesh, material: Elastomer, element: str) -> TaylorHoodSolid | ElementPressureSolid:
-    if element not in ELEMENTS:
-        raise InputError(f"element is {element!r}, but must be one of {', '.join(ELEMENTS)}")
+def _element(mesh: Mesh, wanted: str) -> str:
+    """The element that is wanted, or the best that the mesh is made for."""
+    if wanted not in ELEMENTS:
+        raise InputError(f"element is {wanted!r}, but must be one of {', '.join(ELEMENTS)}")
+    in_blocks = mesh.hexahedra + mesh.wedges > 0
+    if wanted == "auto":
+        return "hexahedron" if in_blocks else "taylor_hood"
+    if wanted == "hexahedron" and not in_blocks:
+        raise InputError(
+            "element is 'hexahedron', but the mesh has none: it must be made by the mesher "
+            "'structured'."
+        )
+    return wanted
+
+
+def _solids(
+    mesh: Mesh, material: Elastomer, element: str
+) -> tuple[TaylorHoodSolid | ElementPressureSolid, ...]:
+    """The elastomer, by the kinds of its elements."""
     if element == "taylor_hood":
-        return TaylorHoodSolid(mesh.points, mesh.tets, material, 3 * len(mesh.points))
-    return ElementPressureSolid(mesh.points, mesh.tets, material)
+        return (TaylorHoodSolid(mesh.points, mesh.tets, material, 3 * len(mesh.points)),)
+    cells = (hexahedra(mesh), wedges(mesh)) if element == "hexahedron" else (mesh.tets,)
+    return tuple(
+        ElementPressureSolid(mesh.points, nodes, material) for nodes in cells if len(nodes)
+    )
 
 
 def _cavity(mesh: Mesh) -> IntArray:

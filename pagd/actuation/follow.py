@@ -66,8 +66,10 @@ def follow(
     recorder.record_last()
     solver.free()
     history = recorder.history()
+    profile = _profile(assembly, solver, recorder)
     status, reason = _ending(followed, recorder, history["pressure_kPa"])
     figures = _figures(body, assembly, followed, solver) | _limits(history) | _gaps(body, history)
+    figures["profile_s"] = profile
     return ActuationResult(status, reason, recorder.states, history, figures)
 
 
@@ -151,9 +153,11 @@ def _ending(
 def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: LinearSolver) -> Figures:
     path = followed.path
     figures: Figures = {
-        "tets": len(body.solid.nodes),
+        "tets": len(body.mesh.tets),
+        "element": body.element,
         "unknowns": len(assembly.free),
         "newton_iterations": path.iterations,
+        "corrections": path.corrections,
         "steps": path.steps,
         "rejected_steps": path.rejected,
         "pressure_kPa": path.load / _KPA,
@@ -164,6 +168,12 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
     if followed.volume_controlled_from is not None:
         figures["volume_controlled_from_kPa"] = followed.volume_controlled_from
     return figures
+
+
+def _profile(assembly: Assembly, solver: LinearSolver, recorder: Recorder) -> dict[str, float]:
+    """Processor time by part, in s."""
+    parts = assembly.clock.seconds | solver.clock.seconds | recorder.clock.seconds
+    return {name: round(seconds, 3) for name, seconds in sorted(parts.items())}
 
 
 def _limits(history: dict[str, FloatArray]) -> Figures:

@@ -13,6 +13,7 @@ from pagd.actuation.body import Body
 from pagd.actuation.result import Progress, RecordedState, Stop
 from pagd.errors import Status
 from pagd.fem.assembly import State
+from pagd.fem.clock import Clock
 from pagd.fem.continuation import Step
 from pagd.fem.fields import share_beyond, strains
 
@@ -51,6 +52,8 @@ class Recorder:
         See :func:`pagd.actuation.free_actuation`.
     force
         The force on what holds the tip, where something does.
+    clock
+        Processor time of the ``states``: their energies, stretches and records.
     states, ending
         The recorded states; why the analysis has to end, once it has.
     """
@@ -59,6 +62,7 @@ class Recorder:
     stop: Stop | None = None
     progress: Progress | None = None
     force: Force | None = None
+    clock: Clock = field(default_factory=Clock)
     states: list[RecordedState] = field(default_factory=list)
     ending: tuple[Status, str] | None = None
     _rows: list[tuple[float, ...]] = field(default_factory=list)
@@ -67,6 +71,10 @@ class Recorder:
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
+        with self.clock.part("states"):
+            return self._note(step)
+
+    def _note(self, step: Step) -> str | None:
         state = self._last = step.state
         pressure, body = state.load / _KPA, self.body
         energy = self._energy(state)
@@ -89,7 +97,7 @@ class Recorder:
         if self._last is None or row in self._recorded:
             return
         unknowns = self._last.unknowns
-        found = strains(self.body.solid, unknowns, self.body.nodes)
+        found = strains(self.body.solids, unknowns, self.body.nodes)
         displacement = self.body.displacement(unknowns)
         pressure = self._rows[row][0]
         self.states.append(
@@ -125,7 +133,7 @@ class Recorder:
 
     def _overstretched(self, unknowns: FloatArray) -> tuple[Status, str] | None:
         limit = self.body.material.largest_stretch
-        share = share_beyond(self.body.solid, unknowns, limit)
+        share = share_beyond(self.body.solids, unknowns, limit)
         if share <= OVERSTRETCHED_SHARE:
             return None
         return Status.overstretched, (

@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 Stop = Callable[[float, FloatArray], tuple[Status, str] | None]
 
 #: Numbers and words by name, units in the names.
-Figures = dict[str, float | int | str]
+Figures = dict[str, float | int | str | dict[str, float]]
 
 #: Is told the pressure in kPa and the iterations of every converged step.
 Progress = Callable[[float, int], None]
@@ -57,8 +57,10 @@ class ActuationResult:
         ``recorded`` (the k-th true row is the k-th state), ``smallest_gap_mm`` between walls
         (not a number where none are near); where the tip is held ``blocked_force_N``.
     figures
-        Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``steps``, ``rejected_steps``;
-        ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator; ``linear_solver``;
+        Counts: ``tets``, ``unknowns``, ``newton_iterations`` (factorisations), ``corrections``
+        (solutions), ``steps``, ``rejected_steps``; ``element``; ``profile_s``, processor time by
+        part; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator;
+        ``linear_solver``;
         ``largest_pressure_kPa`` and ``limit_points``, its maxima along the path, and
         ``volume_controlled_from_kPa`` where pressure control failed; where walls face each
         other and contact is on ``initial_gap_mm`` of the undeformed body,

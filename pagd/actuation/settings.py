@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-ELEMENTS = ("taylor_hood", "element_pressure")
+ELEMENTS = ("auto", "hexahedron", "taylor_hood", "element_pressure")
 
 #: What holds the tip while the blocked force is measured.
 SUPPORTS = ("edge", "plate", "none")
@@ -22,7 +22,8 @@ class Actuation:
     Attributes
     ----------
     element
-        ``taylor_hood`` (P2–P1) or ``element_pressure`` (P2–P0).
+        ``hexahedron`` (Q2–P−1, on blocks), ``taylor_hood`` (P2–P1), ``element_pressure``
+        (P2–P0); ``auto`` takes the first on blocks and the second on other tetrahedra.
     maximum_pressure_kPa, recorded_step_kPa
         Pressure at the end; a state is recorded every so much, and at the end.
     first_step_kPa, smallest_step_kPa
@@ -42,7 +43,7 @@ class Actuation:
         Distance of the plate from the underside of the base.
     """
 
-    element: str = "taylor_hood"
+    element: str = "auto"
     maximum_pressure_kPa: float = 50.0
     recorded_step_kPa: float = 5.0
     first_step_kPa: float = 0.25

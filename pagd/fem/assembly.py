@@ -8,9 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pagd.fem.clock import Clock
 from pagd.fem.compiled import compiled
 from pagd.fem.pattern import Pattern, build_pattern
-from pagd.fem.term import ElementSystem, EnergyTerm, SearchingTerm, TouchingTerm
+from pagd.fem.term import (
+    CondensingTerm,
+    ElementSystem,
+    EnergyTerm,
+    SearchingTerm,
+    StressedTerm,
+    TouchingTerm,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -60,14 +68,29 @@ class Assembly:
         self._numbering = np.full(size, -1, np.int64)
         self._numbering[self.free] = np.arange(len(self.free))
         self._searching = [t for t in self.terms if isinstance(t, SearchingTerm)]
+        self._stressed = [t for t in self.terms if isinstance(t, StressedTerm)]
         self._touching = [t for t in self.terms if isinstance(t, TouchingTerm)]
+        #: Where its time goes: ``pattern``, ``assembly`` of tangents, ``residual``, ``update`` of
+        #: what is condensed, ``contact search``.
+        self.clock = Clock()
         self._make_room()
 
     def _make_room(self) -> None:
-        self.pattern: Pattern = build_pattern([t.dofs for t in self.terms], self._numbering)
-        self._systems = [ElementSystem.of(t.dofs) for t in self.terms]
+        with self.clock.part("pattern"):
+            self.pattern: Pattern = build_pattern([t.dofs for t in self.terms], self._numbering)
+            self._systems = [ElementSystem.of(t.dofs) for t in self.terms]
         # One more place than there are entries: what concerns held unknowns goes there.
         self._values = np.empty(self.pattern.entries + 1)
+
+    @property
+    def iterates_stresses(self) -> bool:
+        """Whether the geometric part of the tangent has stresses that are iterated."""
+        return any(term.iterates_stresses for term in self._stressed)
+
+    @iterates_stresses.setter
+    def iterates_stresses(self, wanted: bool) -> None:
+        for term in self._stressed:
+            term.iterates_stresses = wanted
 
     def at_rest(self) -> State:
         """The undeformed, unloaded state."""
@@ -75,7 +98,8 @@ class Assembly:
 
     def look_around(self, state: State) -> None:
         """Let the terms that search see what is near; :attr:`pattern` is a new one if it grew."""
-        grown = [term.update(state.unknowns) for term in self._searching]
+        with self.clock.part("contact search"):
+            grown = [term.update(state.unknowns) for term in self._searching]
         if any(grown):
             self._make_room()
 
@@ -85,10 +109,12 @@ class Assembly:
         Where the energy is infinite the state is inadmissible and the rest not to be used. The
         pattern may be a new one where something has come near since :meth:`look_around`.
         """
-        result = self._linearize(state)
-        if np.isfinite(result[0]) and not all(term.is_complete for term in self._searching):
+        with self.clock.part("assembly"):
+            result = self._linearize(state)
+        if np.isfinite(result[0]) and not self.is_complete:
             self.look_around(state)
-            return self._linearize(state)
+            with self.clock.part("assembly"):
+                return self._linearize(state)
         return result
 
     def _linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
@@ -104,6 +130,33 @@ class Assembly:
             _add_matrix(positions, system.tangent, self._values)
         return energy, residual, self._values[:-1]
 
+    def residual_near(self, state: State) -> tuple[float, FloatArray]:
+        """Energy and residual (size,) of a state near the one linearised last.
+
+        For a correction with the tangent of that one: internal variables are condensed with its
+        slopes. The energy is infinite where the state is inadmissible.
+        """
+        with self.clock.part("residual"):
+            return self._residual_near(state)
+
+    def _residual_near(self, state: State) -> tuple[float, FloatArray]:
+        energy, residual = 0.0, np.zeros(self.size)
+        parts = zip(self.terms, state.internal, self._systems, strict=True)
+        for term, internal, system in parts:
+            if isinstance(term, CondensingTerm):
+                energy += term.residual_near(state.unknowns, internal, state.load, system.residual)
+            else:
+                energy += term.linearize(state.unknowns, internal, state.load, system)
+            if not np.isfinite(energy):
+                return np.inf, residual
+            _add_vector(term.dofs, system.residual, residual)
+        return energy, residual
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the pattern couples all that acts at the state linearised last."""
+        return all(term.is_complete for term in self._searching)
+
     @property
     def excess(self) -> float:
         """How much deeper (mm) than can be trusted any touching is at the state linearised last."""
@@ -114,7 +167,8 @@ class Assembly:
 
         To be called after :meth:`linearize` at ``state``.
         """
-        internal = tuple(term.advance(correction) for term in self.terms)
+        with self.clock.part("update"):
+            internal = tuple(term.advance(correction) for term in self.terms)
         return State(state.load, state.unknowns + correction, internal)
 
     def energies(self, state: State) -> dict[str, float]:

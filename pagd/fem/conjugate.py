@@ -21,6 +21,7 @@ from pagd.fem.continuation import (
     failed,
     interpolate,
     longer,
+    tried,
 )
 from pagd.fem.newton import Newton, NewtonResult
 from pagd.fem.term import LoadTerm
@@ -86,7 +87,7 @@ class ConjugatePath:
             taken, count = step, len(points)
             result = self._try(points, points[-1].conjugate + step)
             correction = result.corrections[0] if result.corrections else math.inf
-            path = replace(path, iterations=path.iterations + result.iterations)
+            path = tried(path, result)
             if result.state is None or result.is_unstable:
                 step = control.retry_step(taken, correction, count)
                 path = failed(path, result)
@@ -111,14 +112,14 @@ class ConjugatePath:
     ) -> LoadPath:
         """The path after landing on the wanted loads between two points, taken off the list."""
         while wanted and before.state.load < wanted[0] <= after.state.load:
-            iterations, landed = self._land(before, after, wanted[0])
-            path = replace(path, iterations=path.iterations + iterations)
+            start = path.iterations
+            path, landed = self._land(before, after, wanted[0], path)
             if landed.state is None:
                 reason = f"no state found at the wanted {wanted[0]:g}"
                 return replace(path, failure=reason, is_unstable=False)
             path = longer(path, landed.state.load, landed)
             del wanted[0]
-            stop = observe(Step(landed.state, iterations, True))
+            stop = observe(Step(landed.state, path.iterations - start, True))
             if stop:
                 return replace(path, stopped=stop)
         return path
@@ -128,20 +129,21 @@ class ConjugatePath:
         guess = interpolate([point.state for point in points], places, conjugate)
         return self._newton.solve(guess, conjugate, points[-1].state)
 
-    def _land(self, before: _Point, after: _Point, load: float) -> tuple[int, NewtonResult]:
-        """Iterations, and what they led to, at a load between those of two points."""
-        iterations = 0
+    def _land(
+        self, before: _Point, after: _Point, load: float, path: LoadPath
+    ) -> tuple[LoadPath, NewtonResult]:
+        """The path with all tries, and what they led to, at a load between two points'."""
         for _ in range(_LANDINGS):
             ends = [before.state, after.state]
             guess = interpolate(ends, [s.load for s in ends], load)
             result = self._newton.solve(guess)
-            iterations += result.iterations
+            path = tried(path, result)
             if result.state is not None:
                 break
             middle = self._try([before, after], (before.conjugate + after.conjugate) / 2)
-            iterations += middle.iterations
+            path = tried(path, middle)
             if middle.state is None:
                 break
             point = _Point(middle.state, (before.conjugate + after.conjugate) / 2)
             before, after = (point, after) if point.state.load < load else (before, point)
-        return iterations, result
+        return path, result

@@ -42,10 +42,10 @@ class StepControl:
     first: float = 2.5e-4
     smallest: float = 2e-5
     wanted_correction: float = 1.0
-    growth: float = 2.0
+    growth: float = 3.0
     cut: float = 0.25
     retry: float = 0.6
-    order: int = 2
+    order: int = 4
     patience: int = 20
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
@@ -83,6 +83,7 @@ class LoadPath:
     ``stopped`` is what the observer gave as its reason, ``failure`` why no further
     step converged; both are empty where the last load was reached. ``is_unstable`` tells that
     the equilibrium of the last step, or of a try beyond it, is unstable under the load.
+    ``iterations`` counts the factorisations, ``corrections`` all corrections.
     """
 
     load: float
@@ -92,6 +93,7 @@ class LoadPath:
     stopped: str = ""
     failure: str = ""
     is_unstable: bool = False
+    corrections: int = 0
 
 
 #: Why a path ends where Newton's method converged, but on states that nothing rests in.
@@ -119,6 +121,15 @@ def interpolate(states: Sequence[State], places: Sequence[float], place: float) 
         for k in range(len(states[0].internal))
     )
     return State(load, unknowns, internal)
+
+
+def tried(path: LoadPath, result: NewtonResult) -> LoadPath:
+    """A path after the work of one more try, whatever came of it."""
+    return replace(
+        path,
+        iterations=path.iterations + result.iterations,
+        corrections=path.corrections + len(result.corrections),
+    )
 
 
 def failed(path: LoadPath, result: NewtonResult) -> LoadPath:
@@ -175,7 +186,7 @@ class Continuation:
                 before = None if self._boundary else states[-1]
                 result = self._newton.solve(self._guess(states, load), before=before)
                 correction = result.corrections[0] if result.corrections else math.inf
-                path = replace(path, iterations=path.iterations + result.iterations)
+                path = tried(path, result)
                 if result.state is None or result.is_unstable:
                     step, rejections = control.retry_step(taken, correction, known), rejections + 1
                     path = failed(path, result)

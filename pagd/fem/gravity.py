@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pagd.fem import shapes
+from pagd.fem.cells import reference_geometry
 from pagd.fem.quadrature import tetrahedron
-from pagd.fem.solid import reference_geometry
 from pagd.fem.term import NO_INTERNAL, ElementSystem
 
 FloatArray = NDArray[np.float64]

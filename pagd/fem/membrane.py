@@ -178,6 +178,38 @@ def _linearize(
     return total
 
 
+@compiled_parallel
+def _residual_near(
+    points: FloatArray,
+    unknowns: FloatArray,
+    faces: IntArray,
+    slopes: FloatArray,
+    squares: FloatArray,
+    stiffness: FloatArray,
+    stored: FloatArray,
+    residual: FloatArray,
+    rows: FloatArray,
+    forces: FloatArray,
+) -> float:
+    """Energy; fills ε′ᵀ n (E, 18) with the stored n, and H ε − n by the rows known; H ε (E, 9)."""
+    total = 0.0
+    for e in prange(len(faces)):
+        strain, here = np.empty(9), np.empty((9, 18))
+        for t in range(9):
+            squared = _fibre(points, unknowns, faces[e], slopes[t], here[t])
+            strain[t] = 0.5 * (squared - squares[e, t])
+        residual[e, :] = 0.0
+        for t in range(9):
+            forces[e, t] = 0.0
+            for u in range(9):
+                forces[e, t] += stiffness[e, t, u] * strain[u]
+            total += 0.5 * forces[e, t] * strain[t]
+            lacking = forces[e, t] - stored[e, t]
+            for n in range(18):
+                residual[e, n] += stored[e, t] * here[t, n] + lacking * rows[e, t, n]
+    return total
+
+
 class Membrane:
     """The membrane part of an embedded sheet.
 
@@ -222,6 +254,23 @@ class Membrane:
             internal,
             system.residual,
             system.tangent,
+            self._rows,
+            self._forces,
+        )
+
+    def residual_near(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, residual: FloatArray
+    ) -> float:
+        """Fill the residual; see :class:`pagd.fem.term.CondensingTerm`."""
+        return _residual_near(
+            self._points,
+            unknowns,
+            self._faces,
+            self._slopes,
+            self._squares,
+            self._stiffness,
+            internal,
+            residual,
             self._rows,
             self._forces,
         )

@@ -11,6 +11,10 @@ load, and only there; the path passes through it from step to step.
 An equilibrium is stable where the energy grows in all directions: where K has as many negative
 eigenvalues as there are multipliers (the pressures of a mixed element). With c held, the
 directions are those with b · δu = 0; K may then have one more, exactly if b · K⁻¹ b < 0.
+
+A factorisation costs ten times what a residual and a solution do. So the factors are used again
+(the chord method; Kelley, *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995,
+section 5.4) as long as each correction is much smaller than the one before.
 """
 
 from __future__ import annotations
@@ -27,8 +31,15 @@ from pagd.fem.term import LoadTerm
 
 FloatArray = NDArray[np.float64]
 
+#: Energy, residual and values of the matrix.
+Linearised = tuple[float, FloatArray, FloatArray]
+
 # So many corrections on end, after as many, show whether an iteration comes nearer.
 _TO_AND_FRO = 4
+
+# Corrections with old factors do not shrink quadratically: they end below this share of the
+# tolerance, so that the error left is below the tolerance as well.
+_SHARE = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,6 +64,10 @@ class NewtonSettings:
         A correction larger than the one before it, after the second, ends the try; with a number,
         one larger than so many times the larger of the first two, and so do several on end none
         of which is smaller than any before: the iteration goes to and fro.
+    reuses
+        Most corrections with the same factors; 0 factorises for each.
+    contraction
+        Largest ratio of such a correction to the one before it.
     """
 
     tolerance: float = 1e-2
@@ -61,11 +76,13 @@ class NewtonSettings:
     smallest_fraction: float = 1 / 16
     shortenings: int = 5
     growth: float | None = None
+    reuses: int = 6
+    contraction: float = 0.4
 
 
 @dataclass(frozen=True, slots=True)
 class NewtonResult:
-    """A converged state, or none and the reason; the number of systems solved.
+    """A converged state, or none and the reason; the number of factorisations, all corrections.
 
     Of a converged state, ``unstable_directions`` is the number of those in which the energy falls
     under the load, and ``is_unstable`` tells whether it does in any that what is held allows.
@@ -77,6 +94,15 @@ class NewtonResult:
     reason: str = ""
     unstable_directions: int = 0
     is_unstable: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Settled:
+    """A corrected state, whether it is the solution, and whether it cannot even be linearised."""
+
+    state: State
+    converged: bool
+    refused: bool = False
 
 
 class Newton:
@@ -111,6 +137,7 @@ class Newton:
         self.settings = settings or NewtonSettings()
         self._displacements = displacements
         self._multipliers = int((assembly.free >= displacements).sum())
+        self._solution = self._by_load = np.zeros(0)
         self._analyse()
 
     def _analyse(self) -> None:
@@ -123,40 +150,93 @@ class Newton:
         """Iterate from ``guess``; failing to converge is a result, not an error.
 
         At the load of the guess, or at the given value of its ``conjugate``. From the state
-        ``before`` the guess can be shortened.
+        ``before`` the guess can be shortened. What fails with stresses that are iterated is tried
+        with those of the displacements; where they do better, it stays so.
         """
+        result = self._solve(guess, conjugate, before)
+        works = result.state is not None and not result.is_unstable
+        if works or result.iterations == 0 or not self.assembly.iterates_stresses:
+            return result
+        # Far from the solution, where the material stiffens much, a stress along its tangent can
+        # be one that no state has: it spoils the iteration, and the signs of the pivots.
+        self.assembly.iterates_stresses = False
+        again = self._solve(guess, conjugate, before)
+        if again.state is None or again.is_unstable:
+            self.assembly.iterates_stresses = True
+        return replace(
+            again,
+            iterations=again.iterations + result.iterations,
+            corrections=again.corrections + result.corrections,
+        )
+
+    def _solve(self, guess: State, conjugate: float | None, before: State | None) -> NewtonResult:
         settings = self.settings
         corrections: list[float] = []
-        state, (energy, residual, values) = self._first(guess, before)
-        if not np.isfinite(energy):
+        full: list[float] = []
+        state, linearised = self._first(guess, before)
+        if not np.isfinite(linearised[0]):
             return NewtonResult(None, 0, (), "the first guess inverts elements")
-        while len(corrections) < settings.iterations:
+        while len(full) < settings.iterations:
             try:
-                correction, load, falls = self._correction(state, residual, values, conjugate)
+                self._factorise(state, *linearised[1:], conjugate)
             except SingularMatrixError as error:
-                return NewtonResult(None, len(corrections), tuple(corrections), str(error))
-            size = float(np.abs(correction[: self._displacements]).max())
+                return NewtonResult(None, len(full), tuple(corrections), str(error))
+            correction, load, falls = self._with_load(state, self._solution, conjugate)
+            size = self._largest(correction)
+            full.append(size)
             corrections.append(size)
-            if not size < settings.largest_correction or _diverges(corrections, settings):
+            if not size < settings.largest_correction or _diverges(full, settings):
                 break
-            if size < settings.tolerance:
-                final = _loaded(self.assembly.advance(state, correction), load)
-                unstable = self._unstable_directions()
+            unstable = self._unstable_directions()
+            trial = _loaded(self.assembly.advance(state, correction), load)
+            trusted = 2 * self.assembly.excess
+            settled = _Settled(trial, size < settings.tolerance)
+            # Where stability has to be judged, it is at the solution, by factors of its own.
+            if not settled.converged and unstable <= falls:
+                settled = self._settle(trial, trusted, corrections, conjugate)
+            if settled.converged:
                 return NewtonResult(
-                    final, len(corrections), tuple(corrections), "", unstable, unstable > falls
+                    settled.state, len(full), tuple(corrections), "", unstable, unstable > falls
                 )
-            step = self._admissible_step(state, correction, load)
+            step = self._admissible_step(settled, trusted, state, correction, load)
             if step is None:
                 return NewtonResult(
-                    None, len(corrections), tuple(corrections), "the correction inverts elements"
+                    None, len(full), tuple(corrections), "the correction inverts elements"
                 )
-            state, residual, values = step
+            state, linearised = step
         reason = "corrections in mm: " + ", ".join(f"{c:.1e}" for c in corrections)
-        return NewtonResult(None, len(corrections), tuple(corrections), reason)
+        return NewtonResult(None, len(full), tuple(corrections), reason)
 
-    def _first(
-        self, guess: State, before: State | None
-    ) -> tuple[State, tuple[float, FloatArray, FloatArray]]:
+    def _largest(self, correction: FloatArray) -> float:
+        """The largest correction of a displacement, in mm."""
+        return float(np.abs(correction[: self._displacements]).max())
+
+    def _settle(
+        self, state: State, trusted: float, corrections: list[float], conjugate: float | None
+    ) -> _Settled:
+        """Correct with the same factors as long as that works; adds to the ``corrections``.
+
+        A tangent far too stiff, that of a contact which has opened, makes corrections small too,
+        but not ever smaller: it takes two of them to tell.
+        """
+        for count in range(self.settings.reuses):
+            energy, residual = self.assembly.residual_near(state)
+            if not np.isfinite(energy) or self.assembly.excess > trusted:
+                return _Settled(state, converged=False, refused=count == 0)
+            if not self.assembly.is_complete:
+                break
+            solution = self._full(self.solver.solve_again(-residual[self.assembly.free]))
+            correction, load, _ = self._with_load(state, solution, conjugate)
+            size = self._largest(correction)
+            if not size <= self.settings.contraction * corrections[-1]:
+                break
+            state = _loaded(self.assembly.advance(state, correction), load)
+            corrections.append(size)
+            if count > 0 and size < _SHARE * self.settings.tolerance:
+                return _Settled(state, converged=True)
+        return _Settled(state, converged=False)
+
+    def _first(self, guess: State, before: State | None) -> tuple[State, Linearised]:
         """The guess, linearised, or what is left of it."""
         state = guess
         for _ in range(self.settings.shortenings):
@@ -168,28 +248,42 @@ class Newton:
         self.assembly.look_around(state)
         return state, self.assembly.linearize(state)
 
-    def _correction(
+    def _factorise(
         self, state: State, residual: FloatArray, values: FloatArray, conjugate: float | None
-    ) -> tuple[FloatArray, float, bool]:
-        """The Newton correction (size,), zero for held unknowns, and that of the load.
-
-        And whether the load falls with its conjugate, if that is held.
-        """
+    ) -> None:
+        """Solve K x = −r, and K w = b if the conjugate is held; solutions (size,) are kept."""
         if self.assembly.pattern is not self._pattern:
             self._analyse()
         free = self.assembly.free
-        correction = np.zeros(self.assembly.size)
-        correction[free] = self.solver.solve(values, -residual[free])
+        self._solution = self._full(self.solver.solve(values, -residual[free]))
+        if conjugate is not None:
+            slopes = self._conjugate(state)[1]
+            self._by_load = self._full(self.solver.solve_again(slopes[free]))
+
+    def _with_load(
+        self, state: State, solution: FloatArray, conjugate: float | None
+    ) -> tuple[FloatArray, float, bool]:
+        """The correction (size,) and that of the load, from the solution x of K x = −r.
+
+        And whether the load falls with its conjugate, if that is held.
+        """
         if conjugate is None:
-            return correction, 0.0, False
+            return solution, 0.0, False
+        value, slopes = self._conjugate(state)
+        growth = float(slopes @ self._by_load)
+        load = (conjugate - value - float(slopes @ solution)) / growth
+        return solution + load * self._by_load, load, growth < 0
+
+    def _conjugate(self, state: State) -> tuple[float, FloatArray]:
         if self.load_term is None:
             raise ValueError("to hold the conjugate of the load, Newton's method needs its term")
-        value, slopes = self.load_term.conjugate(state.unknowns)
-        by_load = np.zeros(self.assembly.size)
-        by_load[free] = self.solver.solve_again(slopes[free])
-        growth = float(slopes @ by_load)
-        load = (conjugate - value - float(slopes @ correction)) / growth
-        return correction + load * by_load, load, growth < 0
+        return self.load_term.conjugate(state.unknowns)
+
+    def _full(self, solution: FloatArray) -> FloatArray:
+        """All unknowns (size,), zero where they are held."""
+        result = np.zeros(self.assembly.size)
+        result[self.assembly.free] = solution
+        return result
 
     def _unstable_directions(self) -> int:
         """Directions in which the energy falls from the state of the last correction."""
@@ -197,21 +291,20 @@ class Newton:
         return 0 if negative is None else negative - self._multipliers
 
     def _admissible_step(
-        self, state: State, correction: FloatArray, load: float
-    ) -> tuple[State, FloatArray, FloatArray] | None:
+        self, settled: _Settled, trusted: float, state: State, correction: FloatArray, load: float
+    ) -> tuple[State, Linearised] | None:
         """The corrected state, linearised; part of the correction where all of it goes too far."""
-        trusted = 2 * self.assembly.excess
-        fraction = 1.0
+        trial, fraction = settled.state, 0.5 if settled.refused else 1.0
         while fraction >= self.settings.smallest_fraction:
             if fraction < 1.0:
                 # advance() starts from the state linearised last: go back to it.
                 self.assembly.linearize(state)
-            trial = self.assembly.advance(state, fraction * correction)
-            trial = _loaded(trial, fraction * load)
-            energy, residual, values = self.assembly.linearize(trial)
+                trial = self.assembly.advance(state, fraction * correction)
+                trial = _loaded(trial, fraction * load)
+            linearised = self.assembly.linearize(trial)
             last = fraction < 2 * self.settings.smallest_fraction
-            if np.isfinite(energy) and (last or self.assembly.excess <= trusted):
-                return trial, residual, values
+            if np.isfinite(linearised[0]) and (last or self.assembly.excess <= trusted):
+                return trial, linearised
             fraction /= 2
         return None
 

@@ -1,6 +1,7 @@
-"""Quadrature rules on the reference tetrahedron and triangle.
+"""Quadrature rules on the reference cells.
 
-Points are given in barycentric coordinates, weights add up to one: they are
+Points are given in barycentric coordinates, those of the wedge with the height in [0, 1]
+behind; those of the hexahedron in [0, 1]³. Weights add up to one: they are
 shares of the element's volume or area. Sources: Keast, *Comput. Methods Appl.
 Mech. Eng.* 55 (1986) 339, rule of degree 2; Dunavant, *Int. J. Numer. Methods
 Eng.* 21 (1985) 1129, rules of degree 2 and 4.
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Quadrature:
-    """Points (n, corners) in barycentric coordinates and weights (n,) that add up to one."""
+    """Points (n, coordinates) and weights (n,) that add up to one."""
 
     points: NDArray[np.float64]
     weights: NDArray[np.float64]
@@ -61,3 +62,26 @@ def divided(rule: Quadrature, parts: int) -> Quadrature:
                 points.append(np.column_stack([1 - places.sum(axis=1), places]))
                 weights.append(rule.weights / parts**2)
     return Quadrature(np.vstack(points), np.concatenate(weights))
+
+
+def _line() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss's three points on [0, 1], degree 5, and their weights."""
+    places, weights = np.polynomial.legendre.leggauss(3)
+    return (places + 1) / 2, weights / 2
+
+
+def hexahedron() -> Quadrature:
+    """27 points, degree 5 along each axis: Gauss's rule of triquadratic hexahedra."""
+    places, weights = _line()
+    points = np.stack(np.meshgrid(places, places, places, indexing="ij"), axis=-1)
+    return Quadrature(
+        points.reshape(-1, 3), np.einsum("i,j,k->ijk", weights, weights, weights).ravel()
+    )
+
+
+def wedge() -> Quadrature:
+    """18 points: six on the triangle (degree 4) at each of three heights (degree 5)."""
+    places, weights = _line()
+    flat = triangle(4)
+    points = [np.column_stack([flat.points, np.full(len(flat.weights), z)]) for z in places]
+    return Quadrature(np.vstack(points), np.outer(weights, flat.weights).ravel())

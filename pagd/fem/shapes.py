@@ -1,9 +1,13 @@
-"""Shape functions of the quadratic tetrahedron and triangle, in Gmsh's node order.
+"""Shape functions of quadratic cells.
+
+Tetrahedron and triangle are in Gmsh's node order, hexahedron and wedge by layers.
 
 Tetrahedron: corners 0–3, then the edges (0,1) (1,2) (2,0) (3,0) (2,3) (1,3).
 Triangle: corners 0–2, then the edges (0,1) (1,2) (2,0).
 The functions are written in barycentric coordinates l: corner a has
 l_a (2 l_a − 1), the edge between a and b has 4 l_a l_b.
+Hexahedron: node 9 i + 3 j + k at (i/2, j/2, k/2) of the unit cube, products of the quadratic
+functions of a line. Wedge: node 6 k + a at node a of the triangle and the height k/2.
 """
 
 from __future__ import annotations
@@ -70,3 +74,45 @@ def triangle_hessians() -> FloatArray:
     for k, (a, b) in enumerate(TRIANGLE_EDGES):
         result[3 + k] = 4 * (np.outer(slopes[a], slopes[b]) + np.outer(slopes[b], slopes[a]))
     return result
+
+
+def _line_values(places: FloatArray) -> FloatArray:
+    """Values (points, 3) of the quadratic functions with nodes at 0, 1/2 and 1."""
+    x = places
+    return np.stack([(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)], axis=-1)
+
+
+def _line_derivatives(places: FloatArray) -> FloatArray:
+    x = places
+    return np.stack([4 * x - 3, 4 - 8 * x, 4 * x - 1], axis=-1)
+
+
+def hexahedron_values(points: FloatArray) -> FloatArray:
+    """Values (points, 27) of the functions at points (points, 3) of the unit cube."""
+    x, y, z = (_line_values(points[:, k]) for k in range(3))
+    return np.asarray(np.einsum("qi,qj,qk->qijk", x, y, z).reshape(len(points), 27))
+
+
+def hexahedron_derivatives(points: FloatArray) -> FloatArray:
+    """Derivatives (points, 27, 3) along the three reference axes."""
+    values = [_line_values(points[:, k]) for k in range(3)]
+    result = np.empty((len(points), 27, 3))
+    for axis in range(3):
+        x, y, z = (_line_derivatives(points[:, k]) if k == axis else values[k] for k in range(3))
+        result[:, :, axis] = np.einsum("qi,qj,qk->qijk", x, y, z).reshape(len(points), 27)
+    return result
+
+
+def wedge_values(points: FloatArray) -> FloatArray:
+    """Values (points, 18) at points (points, 4): barycentric coordinates, then the height."""
+    flat, height = triangle_values(points[:, :3]), _line_values(points[:, 3])
+    return np.asarray(np.einsum("qa,qk->qka", flat, height).reshape(len(points), 18))
+
+
+def wedge_derivatives(points: FloatArray) -> FloatArray:
+    """Derivatives (points, 18, 3) along the two axes of the triangle and the height."""
+    flat, height = triangle_values(points[:, :3]), _line_values(points[:, 3])
+    within = np.einsum("qai,qk->qkai", triangle_derivatives(points[:, :3]), height)
+    along = np.einsum("qa,qk->qka", flat, _line_derivatives(points[:, 3]))
+    both = np.concatenate([within, along[..., None]], axis=-1)
+    return np.asarray(both.reshape(len(points), 18, 3))

@@ -1,12 +1,13 @@
-"""The elastomer: quadratic tetrahedra with a volumetric pressure of their own.
+"""The elastomer: quadratic cells with a volumetric pressure of their own.
 
 Two elements stand behind one interface:
 
-* :class:`TaylorHoodSolid` (P2–P1, the default): the pressure is continuous and
+* :class:`TaylorHoodSolid` (P2–P1, tetrahedra only): the pressure is continuous and
   linear, one global unknown per corner node. Stable for nearly incompressible
   solids; converges from the stiff side.
-* :class:`ElementPressureSolid` (P2–P0): one pressure per element, condensed.
-  Behaves as Abaqus's C3D10H, to compare with results obtained there.
+* :class:`ElementPressureSolid`: pressures of each element alone, condensed. On hexahedra and
+  wedges linear (Q2–P−1), stable too; on tetrahedra constant (P2–P0), which behaves as Abaqus's
+  C3D10H, to compare with results obtained there.
 """
 
 from __future__ import annotations
@@ -16,10 +17,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.errors import InputError
-from pagd.fem import shapes, solid_kernels
+from pagd.fem import solid_kernels
+from pagd.fem.cells import cell_of, reference_geometry
+from pagd.fem.condensed_kernels import condensed_pressures, residuals_near
 from pagd.fem.quadrature import tetrahedron
-from pagd.fem.term import NO_INTERNAL, ElementSystem, node_dofs
+from pagd.fem.stress_kernels import advance_stresses
+from pagd.fem.taylor_hood_kernels import taylor_hood
+from pagd.fem.term import ElementSystem, node_dofs
 from pagd.materials import Elastomer
 
 FloatArray = NDArray[np.float64]
@@ -33,23 +37,38 @@ class Solid(Protocol):
     nodes: IntArray
     gradients: FloatArray
     weights: FloatArray
+    material: Elastomer
 
 
-def reference_geometry(points: FloatArray, nodes: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Gradients (E, Q, 10, 3) in 1/mm and weights (E, Q) in mm³ at the quadrature points.
+class IteratedStresses:
+    """The stresses S* of a solid's geometric part; see :mod:`pagd.fem.stress_kernels`."""
 
-    Isoparametric, so that curved elements are right too. Raises ``InputError`` where
-    an element is inverted.
-    """
-    rule = tetrahedron()
-    derivatives = shapes.tetrahedron_derivatives(rule.points)
-    jacobians = np.einsum("eai,qaj->eqij", points[nodes], derivatives, optimize=True)
-    determinants = np.linalg.det(jacobians)
-    if not determinants.min() > 0:
-        raise InputError(f"the mesh has {(determinants <= 0).any(1).sum()} inverted tetrahedra")
-    inverses = np.linalg.inv(jacobians)
-    gradients = np.einsum("qaj,eqji->eqai", derivatives, inverses, optimize=True)
-    return np.ascontiguousarray(gradients), determinants * rule.weights / 6
+    def __init__(self, solid: Solid) -> None:
+        self._solid = solid
+        self._unknowns = np.zeros(0)
+
+    def at_rest(self) -> FloatArray:
+        """Stresses (E, 6 Q) of the body without load."""
+        elements, points = self._solid.weights.shape
+        return np.zeros((elements, 6 * points))
+
+    def look(self, unknowns: FloatArray) -> None:
+        """Take the state that corrections start from."""
+        self._unknowns = unknowns.copy()
+
+    def advanced(self, correction: FloatArray) -> FloatArray:
+        """The linearised stresses (E, 6 Q) after a correction."""
+        solid, result = self._solid, np.empty((*self._solid.weights.shape, 6))
+        advance_stresses(
+            self._unknowns,
+            correction,
+            solid.nodes,
+            solid.gradients,
+            solid.material.kind,
+            solid.material.parameters,
+            result,
+        )
+        return result.reshape(len(result), -1)
 
 
 class TaylorHoodSolid:
@@ -66,6 +85,7 @@ class TaylorHoodSolid:
     """
 
     name = "solid"
+    iterates_stresses = True
 
     def __init__(
         self, points: FloatArray, nodes: IntArray, material: Elastomer, first_pressure: int
@@ -77,6 +97,7 @@ class TaylorHoodSolid:
         self._pressure_dofs = np.ascontiguousarray(first_pressure + numbers.reshape(-1, 4))
         self._corner_values = np.ascontiguousarray(tetrahedron().points)
         self.dofs = np.hstack([node_dofs(nodes), self._pressure_dofs])
+        self._stresses = IteratedStresses(self)
 
     @property
     def pressures(self) -> int:
@@ -84,16 +105,19 @@ class TaylorHoodSolid:
         return len(self.corners)
 
     def internal_at_rest(self) -> FloatArray:
-        """There are none."""
-        return NO_INTERNAL
+        """Stresses S* of the geometric part (E, 6 Q), zero at rest."""
+        return self._stresses.at_rest()
 
     def linearize(
         self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
     ) -> float:
         """Fill the element system; see :class:`pagd.fem.term.EnergyTerm`."""
-        return solid_kernels.taylor_hood(
+        self._stresses.look(unknowns)
+        return taylor_hood(
             unknowns,
             self.nodes,
+            internal.reshape(*self.weights.shape, 6),
+            self.iterates_stresses,
             self._pressure_dofs,
             self.gradients,
             self.weights,
@@ -106,8 +130,8 @@ class TaylorHoodSolid:
         )
 
     def advance(self, correction: FloatArray) -> FloatArray:
-        """Nothing to advance."""
-        return NO_INTERNAL
+        """The linearised stresses."""
+        return self._stresses.advanced(correction)
 
     def energy(self, unknowns: FloatArray, load: float) -> float:
         """Stored elastic energy W(F̄) + p (J − 1) − p²/2K, in mJ."""
@@ -118,53 +142,117 @@ class TaylorHoodSolid:
 
 
 class ElementPressureSolid:
-    """P2–P0: one pressure per element, iterated beside the displacements and condensed."""
+    """Pressures of each element alone, iterated beside the displacements and condensed.
+
+    One pressure for a tetrahedron (P2–P0); four for a hexahedron of 27 nodes or a wedge of 18,
+    linear in the coordinates (Q2–P−1; Sussman and Bathe, *Comput. Struct.* 26 (1987) 357, 27/4).
+
+    Parameters
+    ----------
+    points, nodes
+        Coordinates (n, 3) in mm and cells (E, 10, 18 or 27) as :mod:`pagd.fem.shapes` has them.
+    material
+        The elastomer.
+    """
 
     name = "solid"
+    iterates_stresses = True
 
     def __init__(self, points: FloatArray, nodes: IntArray, material: Elastomer) -> None:
         self.nodes = nodes
         self.material = material
         self.gradients, self.weights = reference_geometry(points, nodes)
         self.dofs = node_dofs(nodes)
-        self._volumes = self.weights.sum(axis=1)
-        self._slopes = np.zeros((len(nodes), 30))
-        self._changes = np.zeros(len(nodes))
+        self._values = self._pressure_functions(points)
+        mass = np.einsum("eq,eqc,eqd->ecd", self.weights, self._values, self._values)
+        self._stiffnesses = material.bulk_modulus * np.linalg.inv(mass)
+        count = self._values.shape[2]
+        self._slopes = np.zeros((len(nodes), count, self.dofs.shape[1]))
+        self._changes = np.zeros((len(nodes), count))
+        self._stresses = IteratedStresses(self)
+
+    def _pressure_functions(self, points: FloatArray) -> FloatArray:
+        """Values (E, Q, m): 1, and x, y, z from the centre where the cell has more than 10 nodes.
+
+        Coordinates of the body, not of the reference cell: only so a linear pressure is exact in
+        distorted cells too (Boffi and Gastaldi, *Computing* 69 (2002) 91).
+        """
+        one = np.ones((*self.weights.shape, 1))
+        cell = cell_of(self.nodes)
+        if len(cell.corners) == 4:
+            return one
+        places = np.einsum("qa,eai->eqi", cell.values(cell.rule.points), points[self.nodes])
+        centres = np.einsum("eq,eqi->ei", self.weights, places) / self.weights.sum(axis=1)[:, None]
+        # In mm they would differ from 1 by orders of magnitude.
+        sizes = np.ptp(points[self.nodes], axis=1)
+        return np.concatenate([one, (places - centres[:, None]) / sizes[:, None]], axis=2)
 
     def internal_at_rest(self) -> FloatArray:
-        """Element pressures (E,), zero at rest."""
-        return np.zeros(len(self.nodes))
+        """Pressures (E, m) and stresses S* of the geometric part (E, 6 Q), zero at rest."""
+        return np.hstack([np.zeros(self._changes.shape), self._stresses.at_rest()])
+
+    def _split(self, internal: FloatArray) -> tuple[FloatArray, FloatArray]:
+        count = self._changes.shape[1]
+        stresses = internal[:, count:].reshape(*self.weights.shape, 6)
+        return np.ascontiguousarray(internal[:, :count]), np.ascontiguousarray(stresses)
 
     def linearize(
         self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
     ) -> float:
         """Fill the element system; see :class:`pagd.fem.term.EnergyTerm`."""
-        return solid_kernels.element_pressure(
+        self._stresses.look(unknowns)
+        return condensed_pressures(
             unknowns,
             self.nodes,
-            internal,
+            *self._split(internal),
+            self.iterates_stresses,
             self.gradients,
             self.weights,
+            self._values,
+            self._stiffnesses,
             self.material.kind,
             self.material.parameters,
-            self.material.bulk_modulus,
             system.residual,
             system.tangent,
             self._slopes,
             self._changes,
         )
 
+    def residual_near(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, residual: FloatArray
+    ) -> float:
+        """Fill the residual; see :class:`pagd.fem.term.CondensingTerm`."""
+        self._stresses.look(unknowns)
+        return residuals_near(
+            unknowns,
+            self.nodes,
+            self._split(internal)[0],
+            self.gradients,
+            self.weights,
+            self._values,
+            self._stiffnesses,
+            self.material.kind,
+            self.material.parameters,
+            residual,
+            self._slopes,
+            self._changes,
+        )
+
     def advance(self, correction: FloatArray) -> FloatArray:
-        """The pressures of the linearised volume constraint, K/V (∫(J−1) dV + b·Δu)."""
-        step = np.einsum("ei,ei->e", self._slopes, correction[self.dofs])
-        return np.asarray(self.material.bulk_modulus / self._volumes * (self._changes + step))
+        """The pressures of the linearised volume constraint, K M⁻¹ (∫ φ (J−1) dV + b·Δu).
+
+        And the linearised stresses.
+        """
+        step = np.einsum("eci,ei->ec", self._slopes, correction[self.dofs])
+        pressures = np.einsum("ecd,ed->ec", self._stiffnesses, self._changes + step)
+        return np.hstack([pressures, self._stresses.advanced(correction)])
 
     def energy(self, unknowns: FloatArray, load: float) -> float:
-        """Stored elastic energy W(F̄) + K/2V (∫(J−1) dV)², in mJ."""
+        """Stored elastic energy W(F̄) + ½ v · K M⁻¹ v with v = ∫ φ (J−1) dV, in mJ."""
         isochoric, change = _energies(self, unknowns, self.material)
-        mean = (self.weights * change).sum(axis=1)
-        volumetric = 0.5 * self.material.bulk_modulus / self._volumes * mean**2
-        return float(isochoric.sum() + volumetric.sum())
+        changes = np.einsum("eq,eqc,eq->ec", self.weights, self._values, change)
+        volumetric = 0.5 * np.einsum("ec,ecd,ed->", changes, self._stiffnesses, changes)
+        return float(isochoric.sum() + volumetric)
 
 
 def _energies(

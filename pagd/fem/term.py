@@ -73,6 +73,30 @@ class EnergyTerm(Protocol):
         ...
 
 
+@runtime_checkable
+class CondensingTerm(EnergyTerm, Protocol):
+    """A term with internal variables that can be corrected with a tangent known already."""
+
+    def residual_near(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, residual: FloatArray
+    ) -> float:
+        """Fill the residual (elements, size) near the state linearised last; the energy.
+
+        The internal variables are condensed with the slopes of that state, so that a correction
+        by its tangent, followed by :meth:`advance`, is one of unknowns and internal variables
+        together. Condensed with slopes of its own, a stiff internal variable would keep the
+        iteration from converging. The energy is infinite where the state is inadmissible.
+        """
+        ...
+
+
+@runtime_checkable
+class StressedTerm(EnergyTerm, Protocol):
+    """A term whose geometric stiffness may be that of stresses which are iterated."""
+
+    iterates_stresses: bool
+
+
 class LoadTerm(EnergyTerm, Protocol):
     """The term through which the load λ acts: −λ c(u), linear in λ."""
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from pagd.errors import InputError
+from pagd.mesh.blocks import check_blocks
 from pagd.mesh.quality import node_jacobians
 from pagd.mesh.topology import boundary_faces, components, open_edges, row_numbers, shared_faces
 from pagd.mesh.types import FloatArray, IntArray, Mesh, corner_volumes
@@ -27,14 +28,15 @@ def check_actuator(mesh: Mesh) -> None:
     """Raise InputError with one sentence unless ``mesh`` is that of an actuator.
 
     On top of ``mesh.check()``: the mandatory surfaces are there, lengths look like mm, no
-    element is inverted anywhere, the solid is one piece, every boundary face has exactly one
-    name and none is named that is not on the boundary, the paper is flat, the symmetry plane
-    is y = 0, and the cavity is closed but for that plane.
+    element is inverted anywhere, blocks are whole, the solid is one piece, every boundary face
+    has exactly one name and none is named that is not on the boundary, the paper is flat, the
+    symmetry plane is y = 0, and the cavity is closed but for that plane.
     """
     require_names(mesh.surfaces)
     _check_extent(mesh.points)
     mesh.check()
     check_volumes(mesh.points, mesh.tets)
+    check_blocks(mesh)
     _check_connected(mesh)
     _check_boundary(mesh)
     _check_cavity(mesh)

@@ -9,7 +9,10 @@ from pagd.errors import InputError
 from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.types import Mesh
 
-__all__ = ["MESHERS", "Mesher", "mesher_named"]
+__all__ = ["MESHERS", "STRUCTURED", "Mesher", "mesher_named"]
+
+#: The mesher that divides a design itself into blocks; it takes no surfaces.
+STRUCTURED = "structured"
 
 #: Meshers by name, as module:attribute, so that only the one that is used is imported.
 MESHERS = {

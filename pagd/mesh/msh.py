@@ -21,24 +21,43 @@ __all__ = ["read_msh", "write_msh"]
 
 #: gmsh's numbers of the element types we know, and their node counts.
 _TRI3, _TET4, _TRI6, _TET10 = 2, 4, 9, 11
+_SOLID, _HEXAHEDRA, _WEDGES = "solid", "hexahedra", "wedges"
 _NODES = {_TRI3: 3, _TET4: 4, _TRI6: 6, _TET10: 10}
 
 
 def write_msh(mesh: Mesh, path: Path, binary: bool = True) -> None:
-    """Write ``mesh`` to ``path`` (….msh), every surface a physical group of its name."""
+    """Write ``mesh`` to ``path`` (….msh), every surface a physical group of its name.
+
+    All tetrahedra are in the group ``solid``; those that make up blocks, six or three on end, in
+    the groups ``hexahedra`` and ``wedges`` too.
+    """
     numbers = np.arange(1, len(mesh.points) + 1)
     with replaced_file(path) as temporary, gmsh_session({"Mesh.Binary": binary}) as gmsh:
         model = gmsh.model
-        model.addDiscreteEntity(3, 1)
-        model.mesh.addNodes(3, 1, numbers, mesh.points.ravel())
-        model.mesh.addElementsByType(1, _TET10, [], (mesh.tets + 1).ravel())
-        model.addPhysicalGroup(3, [1], 1, "solid")
+        parts = _parts(mesh)
+        for tag, tets in enumerate(parts.values(), start=1):
+            model.addDiscreteEntity(3, tag)
+            if tag == 1:
+                model.mesh.addNodes(3, 1, numbers, mesh.points.ravel())
+            model.mesh.addElementsByType(tag, _TET10, [], (tets + 1).ravel())
+        model.addPhysicalGroup(3, list(range(1, len(parts) + 1)), 1, _SOLID)
+        for tag, name in enumerate(parts, start=1):
+            if name != _SOLID:
+                model.addPhysicalGroup(3, [tag], tag + 1, name)
         for tag, (name, faces) in enumerate(mesh.surfaces.items(), start=1):
             model.addDiscreteEntity(2, tag)
             model.mesh.addElementsByType(tag, _TRI6, [], (faces + 1).ravel())
             model.addPhysicalGroup(2, [tag], tag, name)
         gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
         gmsh.write(str(temporary))
+
+
+def _parts(mesh: Mesh) -> dict[str, IntArray]:
+    """The tetrahedra by what they make up; all of them as the solid where they are no blocks."""
+    behind = 6 * mesh.hexahedra
+    parts = {_HEXAHEDRA: mesh.tets[:behind], _WEDGES: mesh.tets[behind:]}
+    found = {name: tets for name, tets in parts.items() if len(tets)}
+    return found if mesh.hexahedra or mesh.wedges else {_SOLID: mesh.tets}
 
 
 def read_msh(path: Path) -> Mesh:
@@ -60,11 +79,13 @@ def read_msh(path: Path) -> Mesh:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _RawMesh:
-    """What the file holds: tets (m, 4 or 10), faces (k, 3 or 6) by physical name."""
+    """What the file holds: tets (m, 4 or 10), faces (k, 3 or 6) by physical name, blocks."""
 
     points: FloatArray
     tets: IntArray
     surfaces: dict[str, IntArray]
+    hexahedra: int
+    wedges: int
 
 
 def _load(path: Path) -> _RawMesh:
@@ -84,13 +105,20 @@ def _load(path: Path) -> _RawMesh:
             found = np.searchsorted(sorted_tags, nodes)
             return np.asarray(found, dtype=np.int64).reshape(-1, width)
 
-        nodes = gmsh.model.mesh.getElementsByType(tet_type)[1]
+        blocks = _blocks(gmsh, tet_type)
+        nodes = (
+            np.concatenate(list(blocks.values()))
+            if any(len(found) for found in blocks.values())
+            else gmsh.model.mesh.getElementsByType(tet_type)[1]
+        )
         face_type = _TRI3 if tet_type == _TET4 else _TRI6
         faces = _named_faces(gmsh, face_type)
         return _RawMesh(
             points=np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)[order],
             tets=numbers(nodes, _NODES[tet_type]),
             surfaces={name: numbers(found, _NODES[face_type]) for name, found in faces.items()},
+            hexahedra=len(blocks[_HEXAHEDRA]) // (6 * _NODES[tet_type]),
+            wedges=len(blocks[_WEDGES]) // (3 * _NODES[tet_type]),
         )
 
 
@@ -104,6 +132,18 @@ def _tet_type(gmsh: Any) -> int:
             f"{', '.join(names) or 'no volume elements'}."
         )
     return types[0]
+
+
+def _blocks(gmsh: Any, tet_type: int) -> dict[str, Any]:
+    """Return the nodes of the tetrahedra that make up hexahedra and wedges; none in most files."""
+    found: dict[str, Any] = {_HEXAHEDRA: np.zeros(0), _WEDGES: np.zeros(0)}
+    for _, group in gmsh.model.getPhysicalGroups(3):
+        name = gmsh.model.getPhysicalName(3, group)
+        if name in found and tet_type == _TET10:
+            entities = gmsh.model.getEntitiesForPhysicalGroup(3, group)
+            nodes = [gmsh.model.mesh.getElementsByType(tet_type, int(e))[1] for e in entities]
+            found[name] = np.concatenate(nodes)
+    return found
 
 
 def _named_faces(gmsh: Any, face_type: int) -> dict[str, Any]:
@@ -135,7 +175,15 @@ def _actuator(raw: _RawMesh) -> Mesh:
     if tets.shape[1] == 4:
         mesh = quadratic_mesh(points, tets, named)
     else:
-        mesh = sort_along_axis(Mesh(points=points, tets=tets, surfaces=named))
+        mesh = sort_along_axis(
+            Mesh(
+                points=points,
+                tets=tets,
+                surfaces=named,
+                hexahedra=raw.hexahedra,
+                wedges=raw.wedges,
+            )
+        )
     check_actuator(mesh)
     return mesh
 

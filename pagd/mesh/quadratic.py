@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from pagd.mesh.types import TET_EDGES, TRI_EDGES, FloatArray, IntArray, Mesh
 
 
-def quadratic_mesh(points: FloatArray, tets: IntArray, surfaces: dict[str, IntArray]) -> Mesh:
+def quadratic_mesh(
+    points: FloatArray,
+    tets: IntArray,
+    surfaces: dict[str, IntArray],
+    hexahedra: int = 0,
+    wedges: int = 0,
+) -> Mesh:
     """Return the ten-node mesh of linear tetrahedra (m, 4) and triangles (k, 3).
 
     New nodes lie exactly half-way, so every element map is affine. Nodes and elements are
     sorted along the longest axis, which keeps what is near in space near in memory; points that
-    belong to no tetrahedron are dropped.
+    belong to no tetrahedron are dropped. Tetrahedra that come as ``hexahedra`` and ``wedges``
+    stay in order.
     """
     points, tets, surfaces = compact(points, tets, surfaces)
     pairs = np.sort(tets[:, TET_EDGES].reshape(-1, 2), axis=1)
@@ -30,20 +39,28 @@ def quadratic_mesh(points: FloatArray, tets: IntArray, surfaces: dict[str, IntAr
             points=np.vstack((points, points[pairs[first]].mean(axis=1))),
             tets=np.hstack((tets, offset + numbers.reshape(-1, 6))),
             surfaces={name: upgraded(faces) for name, faces in surfaces.items()},
+            hexahedra=hexahedra,
+            wedges=wedges,
         )
     )
 
 
 def sort_along_axis(mesh: Mesh) -> Mesh:
-    """Return the mesh with nodes, elements and faces sorted along the longest axis."""
+    """Return the mesh with nodes, elements and faces sorted along the longest axis.
+
+    Elements that come as blocks stay in order.
+    """
     axis = int(np.argmax(np.ptp(mesh.points, axis=0)))
     order = np.argsort(mesh.points[:, axis], kind="stable")
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
     tets = rank[mesh.tets]
-    return Mesh(
+    if not (mesh.hexahedra or mesh.wedges):
+        tets = tets[np.argsort(tets.min(axis=1), kind="stable")]
+    return replace(
+        mesh,
         points=mesh.points[order],
-        tets=tets[np.argsort(tets.min(axis=1), kind="stable")],
+        tets=tets,
         surfaces={
             name: rank[faces][np.argsort(rank[faces].min(axis=1), kind="stable")]
             for name, faces in mesh.surfaces.items()

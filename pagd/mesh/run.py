@@ -9,14 +9,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from pagd.errors import InputError, PagdError, StageFailure, Status
 from pagd.mesh import worker
 from pagd.mesh.checks import check_actuator
-from pagd.mesh.interface import MESHERS, mesher_named
+from pagd.mesh.interface import MESHERS, STRUCTURED, mesher_named
 from pagd.mesh.quality import MeshQuality, mesh_quality
 from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.types import Mesh
@@ -63,18 +63,21 @@ def mesh_with_limits(
     time_limit_s: float,
     exact_volume: float | None = None,
     gate: MeshGate | None = None,
+    structured: Callable[[], Mesh] | None = None,
 ) -> MeshingResult:
     """Mesh with the first of the named meshers that succeeds.
 
-    Each runs in a process of its own, which is killed with all it started when the time is up,
-    so that neither an endless loop nor a crash inside a mesher reaches the caller.
+    Each of those that mesh surfaces runs in a process of its own, which is killed with all it
+    started when the time is up, so that neither an endless loop nor a crash inside a mesher
+    reaches the caller.
 
     Parameters
     ----------
     surfaces
         The solid, as two surfaces that meet in the paper plane.
     mesher_names
-        Names from :data:`pagd.mesh.interface.MESHERS`, in the order they are tried.
+        Names from :data:`pagd.mesh.interface.MESHERS`, or ``structured``, in the order they are
+        tried.
     size
         Length of the elements' edges in mm.
     time_limit_s
@@ -84,6 +87,9 @@ def mesh_with_limits(
         mesh against; the volume within the surfaces unless given.
     gate
         What the mesh must reach.
+    structured
+        What the mesher ``structured`` does, where there is a design behind the surfaces; without
+        it that mesher is passed over.
 
     Raises
     ------
@@ -98,7 +104,10 @@ def mesh_with_limits(
     for name in mesher_names:
         start = time.perf_counter()
         try:
-            mesh = _run_apart(name, surfaces, size, time_limit_s)
+            if name == STRUCTURED:
+                mesh = _run_structured(structured)
+            else:
+                mesh = _run_apart(name, surfaces, size, time_limit_s)
             quality = _accepted(mesh, volume, gate or MeshGate())
         except PagdError as error:
             seconds = time.perf_counter() - start
@@ -117,7 +126,8 @@ def _check_settings(names: Sequence[str], size: float, time_limit_s: float) -> N
     if not names:
         raise InputError("mesher_names: must name at least one mesher.")
     for name in names:
-        mesher_named(name)
+        if name != STRUCTURED:
+            mesher_named(name)
 
 
 def _accepted(mesh: Mesh, volume: float, gate: MeshGate) -> MeshQuality:
@@ -137,6 +147,14 @@ def _accepted(mesh: Mesh, volume: float, gate: MeshGate) -> MeshQuality:
             f"{gate.largest_volume_error:g} of {volume:.6g} mm³.",
         )
     return quality
+
+
+def _run_structured(structured: Callable[[], Mesh] | None) -> Mesh:
+    if structured is None:
+        raise StageFailure(
+            Status.mesh_failed, "It divides designs by their parameters; there are surfaces only."
+        )
+    return structured()
 
 
 def _run_apart(name: str, surfaces: SurfacePair, size: float, time_limit_s: float) -> Mesh:

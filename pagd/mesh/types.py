@@ -1,4 +1,7 @@
-"""The mesh every stage after meshing works on: quadratic tetrahedra with named surfaces."""
+"""The mesh every stage after meshing works on: quadratic tetrahedra with named surfaces.
+
+They may come as blocks, of which a solver makes hexahedra and wedges.
+"""
 
 from __future__ import annotations
 
@@ -34,6 +37,10 @@ class Mesh:
         TRI_EDGES. Faces on the boundary point out of the solid (those of the cavity into the
         cavity); those of an internal surface (the paper) all point to the same side.
 
+    hexahedra, wedges: how many of the tetrahedra come as blocks: six on end make up each of the
+        hexahedra, three each of the wedges behind them (:mod:`pagd.mesh.blocks`); 0 where the
+        tetrahedra are not arranged so.
+
     An actuator has ``fixed``, ``cavity`` and mostly ``paper``, ``tip``, ``outer`` and, as a
     half model, ``symmetry``.
     """
@@ -41,6 +48,8 @@ class Mesh:
     points: FloatArray
     tets: IntArray
     surfaces: dict[str, IntArray]
+    hexahedra: int = 0
+    wedges: int = 0
 
     def nodes_of(self, name: str) -> IntArray:
         """Return the sorted node numbers (k,) of surface `name`; InputError if there is none."""

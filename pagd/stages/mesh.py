@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pagd.design import Channel
 from pagd.errors import InputError, StageFailure
+from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
 from pagd.mesh.run import MeshGate, mesh_with_limits
@@ -19,6 +22,7 @@ from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.topology import components, edge_neighbours
 from pagd.mesh.types import Mesh
 from pagd.record import Meter, Record, read_record
+from pagd.stages.geometry import read_design
 from pagd.stages.stage import Outcome, run_stage
 
 __all__ = ["MESH_NAME", "OwnSurfaces", "identity", "mesh_file", "name_of", "run", "run_own"]
@@ -64,7 +68,8 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
         ending = "_half.stl" if half else ".stl"
         pair = SurfacePair.from_stl(repair / f"body{ending}", repair / f"base{ending}", half)
         volume = drawn.figures["solid_volume_mm3"] / (2 if half else 1)
-        _mesh(pair, volume, folder, outcome, config["mesh"])
+        blocks = partial(_structured, geometry, config["mesh"]["block_mm"], half)
+        _mesh(pair, volume, folder, outcome, config["mesh"], blocks)
 
     return run_stage(
         "mesh",
@@ -75,6 +80,16 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
         upstream=[drawn, repaired],
         libraries=_LIBRARIES,
     )
+
+
+def _structured(geometry: Path, size: float, half: bool) -> Mesh:
+    """The row of chambers that the stage geometry has drawn, in blocks."""
+    design = read_design(geometry).design
+    channel = {
+        key.removesuffix("_mm"): value
+        for key, value in read_record(geometry).configuration["channel"].items()
+    }
+    return chamber_row(design, Channel(**channel), size, half=half)
 
 
 def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
@@ -146,6 +161,7 @@ def _mesh(
     folder: Path,
     outcome: Outcome,
     settings: Mapping[str, Any],
+    structured: Callable[[], Mesh] | None = None,
 ) -> None:
     outcome.figures["half"] = pair.half
     result = mesh_with_limits(
@@ -158,6 +174,7 @@ def _mesh(
             smallest_scaled_jacobian=settings["smallest_scaled_jacobian"],
             largest_volume_error=settings["largest_volume_error"],
         ),
+        structured=structured,
     )
     write_msh(result.mesh, folder / MESH_NAME)
     outcome.figures |= {

@@ -237,10 +237,8 @@ def test_missing_surfaces(missing: str) -> None:
 
 
 def test_unknown_element() -> None:
-    wanted = replace(SHORT, element="hexahedron")
-    with pytest.raises(
-        InputError, match=r"element is 'hexahedron'.* taylor_hood, element_pressure"
-    ):
+    wanted = replace(SHORT, element="brick")
+    with pytest.raises(InputError, match=r"element is 'brick'.* taylor_hood, element_pressure"):
         free_actuation(block(), MATERIAL, PAPER, wanted)
 
 

@@ -9,7 +9,7 @@ from pagd import config
 from pagd.actuation import Actuation
 from pagd.design import GeometryRules
 from pagd.errors import InputError
-from pagd.mesh.interface import MESHERS
+from pagd.mesh.interface import MESHERS, STRUCTURED
 from pagd.mesh.run import MeshGate
 from pagd.metrics import Thresholds
 from pagd.stages import STAGE_VERSIONS
@@ -29,7 +29,7 @@ def test_defaults_are_those_of_the_library() -> None:
     assert defaults["metrics"] == asdict(Thresholds()) | {"pressure_ramp_kPa_per_s": None}
     gate = {key: defaults["mesh"][key] for key in asdict(MeshGate())}
     assert gate == asdict(MeshGate())
-    assert defaults["mesh"]["meshers"] == list(MESHERS)
+    assert defaults["mesh"]["meshers"] == [STRUCTURED, *MESHERS]
     limits = {"bending_limit_deg": defaults["solve"]["bending_limit_deg"]}
     solve = asdict(Actuation())
     gravity = {"gravity_m_s2": list(solve["gravity_m_s2"])}

@@ -65,7 +65,9 @@ def newton() -> Newton:
     return Newton(assembly, SuperLUSolver(), 2, settings, load_term=term)
 
 
-CONTROL = StepControl(first=0.05, smallest=1e-4, wanted_correction=0.02, patience=3)
+CONTROL = StepControl(
+    first=0.05, smallest=1e-4, wanted_correction=0.02, growth=2.0, order=2, patience=3
+)
 
 
 def follow(

@@ -18,7 +18,7 @@ def test_homogeneous_state() -> None:
     gradient = np.array([[1.3, 0.4, -0.2], [0.1, 0.8, 0.3], [-0.3, 0.2, 1.1]])
     exact = np.log(np.linalg.svd(gradient, compute_uv=False)[0])
     state = (MESH.points @ (gradient - np.eye(3)).T).ravel()
-    found = strains(SOLID, state, len(MESH.points))
+    found = strains([SOLID], state, len(MESH.points))
     np.testing.assert_allclose(found.nodes, exact, rtol=1e-12)
     assert found.largest == pytest.approx(exact)
     assert found.percentile_99 == pytest.approx(exact)
@@ -29,12 +29,12 @@ def test_a_linear_strain_is_extrapolated_to_the_nodes() -> None:
     size = 1e-5
     state = np.zeros_like(MESH.points)
     state[:, 0] = size * MESH.points[:, 0] ** 2 / 2
-    found = strains(SOLID, state.ravel(), len(MESH.points))
+    found = strains([SOLID], state.ravel(), len(MESH.points))
     np.testing.assert_allclose(found.nodes, size * MESH.points[:, 0], atol=1e-4 * size)
 
 
 def test_nodes_without_elements_are_zero() -> None:
-    found = strains(SOLID, np.zeros(MESH.points.size + 6), len(MESH.points) + 2)
+    found = strains([SOLID], np.zeros(MESH.points.size + 6), len(MESH.points) + 2)
     assert found.nodes[-2:].tolist() == [0.0, 0.0]
 
 
@@ -42,9 +42,9 @@ def test_share_of_the_volume_beyond_a_stretch() -> None:
     """The half x > 2 stretched by a half, the other not: with quadrature points, half the mesh."""
     state = np.zeros_like(MESH.points)
     state[:, 0] = 0.5 * np.maximum(MESH.points[:, 0] - 2.0, 0.0)
-    assert share_beyond(SOLID, state.ravel(), 1.4) == pytest.approx(0.5)
-    assert share_beyond(SOLID, state.ravel(), 1.6) == 0.0
-    assert share_beyond(SOLID, state.ravel(), 0.9) == pytest.approx(1.0)
+    assert share_beyond([SOLID], state.ravel(), 1.4) == pytest.approx(0.5)
+    assert share_beyond([SOLID], state.ravel(), 1.6) == 0.0
+    assert share_beyond([SOLID], state.ravel(), 0.9) == pytest.approx(1.0)
 
 
 def test_weighted_percentile() -> None:

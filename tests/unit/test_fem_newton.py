@@ -92,22 +92,44 @@ def at(load: float, unknown: float = 0.0) -> State:
     return State(load, np.array([unknown]), (NO_INTERNAL,))
 
 
-def test_a_linear_spring_takes_two_iterations() -> None:
+def test_a_linear_spring_takes_one_factorisation() -> None:
     result = newton(Spring()).solve(at(0.5))
     assert result.state is not None
     assert result.state.unknowns[0] == pytest.approx(0.5, rel=1e-14)
-    assert result.iterations == 2
-    assert result.corrections == pytest.approx((0.5, 0.0))
+    assert result.iterations == 1
+    assert result.corrections == pytest.approx((0.5, 0.0, 0.0))
+    again = newton(Spring(), reuses=0).solve(at(0.5))
+    assert (again.iterations, again.corrections) == (2, pytest.approx((0.5, 0.0)))
 
 
 def test_convergence_is_quadratic() -> None:
-    result = newton(Spring(stiffening=1.0), tolerance=1e-10, iterations=20).solve(at(2.0, 0.9))
+    stiffening = newton(Spring(stiffening=1.0), tolerance=1e-10, iterations=20, reuses=0)
+    result = stiffening.solve(at(2.0, 0.9))
     assert result.state is not None
     assert result.state.unknowns[0] == pytest.approx(1.0, rel=1e-14)  # 1 + 1³ = 2
     small = [c for c in result.corrections if 1e-12 < c < 0.1]
     assert len(small) >= 3
     for before, after in itertools.pairwise(small):
         assert after < before**2
+
+
+def test_factors_are_used_again_while_corrections_shrink_with_them() -> None:
+    """From 0.99 the tangent is nearly that of the solution: one factorisation is enough."""
+    result = newton(Spring(stiffening=1.0), tolerance=1e-3).solve(at(2.0, 0.99))
+    assert result.state is not None
+    assert result.iterations == 1
+    assert len(result.corrections) >= 3
+    assert abs(result.state.unknowns[0] - 1.0) < 1e-6
+    far = newton(Spring(stiffening=1.0), tolerance=1e-3).solve(at(2.0, 0.0))
+    assert far.state is not None
+    assert far.iterations > 1
+
+
+def test_factors_that_are_too_stiff_do_not_feign_convergence() -> None:
+    """From inside the stop, a hundred times as stiff, the solution lies outside, at 0.95."""
+    result = newton(Stop(), tolerance=1e-2).solve(at(0.95, 1.05))
+    assert result.state is not None
+    assert result.state.unknowns[0] == pytest.approx(0.95)
 
 
 def test_the_last_correction_is_applied() -> None:
@@ -247,7 +269,7 @@ def test_loads_rise() -> None:
 
 def test_steps_grow_while_guesses_are_good() -> None:
     fake = FakeNewton(first_correction=0.1)
-    steps, _ = follow(fake, [10.0], first=0.01, growth=2.0, wanted_correction=1.0)
+    steps, _ = follow(fake, [10.0], first=0.01, growth=2.0, wanted_correction=1.0, order=2)
     sizes = np.diff([0.0, *(s.state.load for s in steps)])
     # The first guess is constant: an error of 0.1 allows ten times the step, but it may only
     # double; the quadratic ones (∛10 = 2.15) too.

@@ -13,7 +13,7 @@ from pagd.validation import check, check_each, defaults, faults, schema
     ("document", "sentence"),
     [
         ({"mash": {}}, "mash is not a known key (did you mean mesh?)"),
-        ({"mesh": {"qqqqq": 1}}, "mesh.qqqqq is not a known key (known are meshers, size_mm"),
+        ({"mesh": {"qqqqq": 1}}, "mesh.qqqqq is not a known key (known are meshers, block_mm"),
         ({"mesh": 3}, "mesh = 3 must be a table of keys and values"),
         ({"mesh": {"size_mm": "3"}}, "mesh.size_mm = '3' must be a number"),
         ({"mesh": {"size_mm": True}}, "mesh.size_mm = True must be a number"),
@@ -22,9 +22,15 @@ from pagd.validation import check, check_each, defaults, faults, schema
         ({"limits": {"theta_deg": -float("inf")}}, "limits.theta_deg = -inf must be finite"),
         ({"mesh": {"size_mm": 10**400}}, "mesh.size_mm = 1000"),
         ({"mesh": {"size_mm": 0}}, "mesh.size_mm = 0 must be greater than 0"),
-        ({"mesh": {"meshers": ["tet gen"]}}, "mesh.meshers[0] = 'tet gen' must be gmsh, "),
+        (
+            {"mesh": {"meshers": ["tet gen"]}},
+            "mesh.meshers[0] = 'tet gen' must be structured, gmsh, ",
+        ),
         ({"mesh": {"meshers": []}}, "mesh.meshers must not be empty"),
-        ({"solve": {"element": "C3D10"}}, "solve.element = 'C3D10' must be one of taylor_hood, e"),
+        (
+            {"solve": {"element": "C3D10"}},
+            "solve.element = 'C3D10' must be one of auto, hexahedron, t",
+        ),
         ({"limits": {"gap_mm": -1}}, "limits.gap_mm = -1 must be at least 0"),
         ({"limits": {"theta_deg": 91}}, "limits.theta_deg = 91 must be at most 60"),
         ({"designs": {}}, "designs must not be empty"),
@@ -111,4 +117,4 @@ def test_check_each_finds_the_one_that_is_broken() -> None:
 def test_defaults_pass_the_schema_they_come_from() -> None:
     config = defaults(schema("config"))
     assert list(faults(config, "config")) == []
-    assert config["mesh"]["meshers"] == ["gmsh", "ftetwild"]
+    assert config["mesh"]["meshers"] == ["structured", "gmsh", "ftetwild"]
