@@ -51,7 +51,7 @@ class Converged:
     tip_mm
         Displacement (p, 3) of the tip.
     spread_mm
-        Distance (p,) of that from what the two finest meshes alone give.
+        How far (p,) that would be off, at most, with one of the meshes left out.
     meshes
         What it is made of: size, tetrahedra, unknowns, displacement at the last pressure in mm.
     """
@@ -115,12 +115,14 @@ def extrapolated(
         raise InputError(f"{design}: the meshes reached no recorded pressure in common.")
     h = np.array([run.tets for run in runs], np.float64) ** (-1 / 3)
     tips = np.array([[run.tip(p) for p in common] for run in runs])
-    limit, finest = _limit(h, tips, order), _limit(h[-2:], tips[-2:], order)
+    limit = _limit(h, tips, order)
+    others = [_limit(np.delete(h, i), np.delete(tips, i, axis=0), order) for i in range(len(runs))]
+    spread = np.max([np.linalg.norm(limit - other, axis=1) for other in others], axis=0)
     return Converged(
         design=design,
         pressure_kPa=common,
         tip_mm=np.round(limit, 6).tolist(),
-        spread_mm=np.round(np.linalg.norm(limit - finest, axis=1), 6).tolist(),
+        spread_mm=np.round(spread, 6).tolist(),
         meshes=[
             {
                 "size_mm": size,

@@ -66,8 +66,8 @@ def _converged_notes(designs: Iterable[str], exact: Mapping[str, Converged]) -> 
         sizes = ", ".join(f"{mesh['size_mm']:g}" for mesh in tip.meshes)
         yield (
             f"- {design}: the mesh-converged tip moves by {_place(tip.tip_mm[-1])} mm at "
-            f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; by the two "
-            f"finest alone it would be {_percent(tip.spread_mm[-1] / length)} off."
+            f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; with one "
+            f"of them left out it would be off by {_percent(tip.spread_mm[-1] / length)} at most."
         )
 
 
@@ -172,8 +172,8 @@ def converged_text(tips: Mapping[str, Converged], order: float) -> str:
         spread = f"± {tip.spread_mm[-1]:.2f} mm"
         lines.append([tip.design, "0", "", "", _place(tip.tip_mm[-1]), spread])
     text = (
-        f"Tip at the last pressure, extrapolated with the order {order:.3g}; ± is how far off the "
-        "two finest meshes alone would be."
+        f"Tip at the last pressure, extrapolated with the order {order:.3g}; ± is how far off it "
+        "would be, at most, with one of the meshes left out."
     )
     return f"{wrapped(text)}\n\n{table(headings, lines)}"
 

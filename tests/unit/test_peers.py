@@ -308,7 +308,7 @@ class TestSections:
         row = EqualErrorRow(BODY, PAGD, 0.05, 10.0, tried, result)
         exact = {"bending": replace(EXACT, spread_mm=[0.1, 0.2])}
         text = " ".join(page.equal_error_text("command", [row], 2, exact).split())
-        assert "finest alone it would be 1.0 % off" in text
+        assert "left out it would be off by 1.0 % at most" in text
         assert "takes **more than 400 times** as long" in text
         assert "by the trend of its last two: 6,400 times" in text
 
