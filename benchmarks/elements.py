@@ -2,7 +2,7 @@
 
     python benchmarks/elements.py [--designs bending twisting mixed] [--pressures 10 50]
         [--tetrahedra 6 4 3] [--element-pressure 6 4 3] [--hexahedra 6 4 3 2]
-        [--halved-tetrahedra 4] [--halved-hexahedra 6] [--order 1.089] [--config JSON]
+        [--halved-tetrahedra 4] [--halved-hexahedra 6] [--order P] [--config JSON]
         [--page docs/performance.md] [--out results/benchmarks] [--time-limit 7200] [--anew]
 
 Every analysis has a process and a thread of its own; its figures are kept in elements/ in the
@@ -16,9 +16,8 @@ import argparse
 import sys
 
 from performance import elements
-from performance.element_page import text_of
-from performance.elements import Case, Point
-from performance.fits import EDGE_ORDER
+from performance.element_page import Solved, text_of
+from performance.elements import Case
 from performance.options import (
     add_common,
     command_of,
@@ -46,17 +45,17 @@ def main() -> None:
         _check(options)
         must_have_section(options.page, _SECTION)
         measured = measured_in(options, _SECTION)
-        cases: dict[Case, list[Point]] = {}
+        cases: dict[Case, Solved] = {}
         commits: set[str | None] = set()
         for case in _cases(options):
-            points, made = _solved(case, measured, options)
-            cases[case] = points
+            cases[case], made = _solved(case, measured, options)
             commits |= made
         usual = vars(_parser().parse_args([]))
         first = origin_lines(
             command_of("benchmarks/elements.py", vars(options), usual), commits=commits
         )
-        publish(options.page, _SECTION, f"{first}\n\n{text_of(cases, options.order)}")
+        text = text_of(cases, is_given=options.order is not None)
+        publish(options.page, _SECTION, f"{first}\n\n{text}")
     except InputError as error:
         parser.error(str(error))
     except KeyboardInterrupt:
@@ -65,7 +64,8 @@ def main() -> None:
 
 def _check(options: argparse.Namespace) -> None:
     sizes = {key.replace("_", "-"): getattr(options, key) for key in elements.FAMILIES}
-    must_be_positive({**sizes, "pressures": options.pressures, "order": options.order})
+    order = [] if options.order is None else [options.order]
+    must_be_positive({**sizes, "pressures": options.pressures, "order": order})
     for key in _HALVED:
         if not (size := getattr(options, f"halved_{key}")) >= 0:
             raise InputError(f"--halved-{key} = {size:g} must be at least 0.")
@@ -84,14 +84,15 @@ def _cases(options: argparse.Namespace) -> list[Case]:
 
 def _solved(
     case: Case, measured: Measured, options: argparse.Namespace
-) -> tuple[list[Point], set[str | None]]:
+) -> tuple[Solved, set[str | None]]:
     """The points of a case, and the commits that they are of."""
     runs = elements.runs_of(case, options.config)
     print(f"{case.title}: {len(runs)} meshes", file=sys.stderr, flush=True)
     by_label = measured.of(list(runs.values()))
     found = {key: by_label[run.label] for key, run in runs.items()}
-    points = elements.points_of(case, found, options.order)
-    return points, {one.commit for one in found.values()}
+    order = options.order or elements.order_of(case, found)
+    solved = Solved(elements.points_of(case, found, order), order)
+    return solved, {one.commit for one in found.values()}
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -114,7 +115,12 @@ def _parser() -> argparse.ArgumentParser:
             help=f"size of the mesh of {key} that is solved with every edge halved too, for the "
             "limit; 0: none (default: %(default)g)",
         )
-    add("--order", type=float, default=EDGE_ORDER, help="of the error (default: %(default)g)")
+    add(
+        "--order",
+        type=float,
+        metavar="P",
+        help="of the error (default: that with which both kinds of elements have the same limit)",
+    )
     add_common(parser)
     return parser
 

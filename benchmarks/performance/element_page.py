@@ -3,64 +3,77 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from performance.cells import cell, count, percent, significant
-from performance.elements import FAMILIES, Case, Point, reference_of
+from performance.elements import FAMILIES, REFERENCES, Case, Point, reference_of
 from performance.fits import relative_distance, seconds_at
 from performance.page import table, wrapped
 
-__all__ = ["WANTED_ERROR", "text_of"]
+__all__ = ["WANTED_ERROR", "Solved", "text_of"]
 
 #: Error of the tip that is asked for.
 WANTED_ERROR: Final = 0.03
 
-#: Families whose finest meshes give a limit; errors are to the first that is known.
-_REFERENCES: Final = ("hexahedra", "tetrahedra")
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """The points of a case, and the order that its limits are extrapolated with."""
+
+    points: Sequence[Point]
+    order: float
 
 
-def text_of(cases: Mapping[Case, Sequence[Point]], order: float) -> str:
-    """Return the section without its first lines."""
+def text_of(cases: Mapping[Case, Solved], *, is_given: bool = False) -> str:
+    """Return the section without its first lines; ``is_given``: the order was not looked for."""
     return "\n\n".join(
         [
-            wrapped(_introduction(order)),
-            wrapped(f"Core-seconds, of everything, at an error of {WANTED_ERROR:.0%}:"),
-            _summary(cases, order),
-            *(part for case, points in cases.items() for part in _case(case, points, order)),
+            wrapped(_introduction(is_given)),
+            f"Core-seconds, of everything, at an error of {percent(WANTED_ERROR, 0)}:",
+            _summary(cases),
+            *(part for case, solved in cases.items() for part in _case(case, solved)),
         ]
     )
 
 
-def _introduction(order: float) -> str:
+def _introduction(is_given: bool) -> str:
+    order = (
+        "a given order"
+        if is_given
+        else "the order with which both kinds of elements have the same limit, as nearly as they "
+        "can (that of the inward edges of the cavity, 1.09, where there is none)"
+    )
     return (
         "Free actuation with contact, one thread. The error is the distance of the tip from its "
-        "limit, by the limit's displacement. Limits are extrapolated (Richardson) with the order "
-        f"{order:g}, that of the inward edges of the cavity, of a mesh and its halves: the same "
-        "elements with every edge halved, eight times as many. The rows of two sizes are limits "
-        "too, at the cost of both meshes; element sizes enter by the unknowns, number to the "
-        "−1/3, since walls have at least one layer of elements whatever the size. A mesh that a "
-        "limit is of has an error by construction: its distance from the other limit tells more."
+        "limit, by the limit's displacement. Limits are extrapolated (Richardson) from a mesh and "
+        "its halves, the same elements with every edge halved, eight times as many; with "
+        f"{order}. The rows of two sizes are limits too, at the cost of both meshes; element "
+        "sizes enter by the unknowns, number to the −1/3, since walls have at least one layer of "
+        "elements whatever the size. A mesh that a limit is of has an error by construction: its "
+        "distance from the other limit tells more."
     )
 
 
-def _case(case: Case, points: Sequence[Point], order: float) -> list[str]:
-    limits = _limits(case, points, order)
-    rows = [_row(point, limits) for point in points]
+def _case(case: Case, solved: Solved) -> list[str]:
+    limits = _limits(case, solved)
+    rows = [_row(point, limits) for point in solved.points]
     headings = ["elements", "size, mm", "unknowns", "tip displacement, mm"]
-    headings += [f"error, by {name}" for name in _REFERENCES]
+    headings += [f"error, by {name}" for name in REFERENCES]
     headings += ["solve, core-s", "all, core-s", "error × seconds, % s"]
-    return [f"### {case.title}", wrapped(_told(limits)), table(headings, rows), *_troubles(points)]
+    told = wrapped(_told(limits, solved.order))
+    return [f"### {case.title}", told, table(headings, rows), *_troubles(solved.points)]
 
 
-def _limits(case: Case, points: Sequence[Point], order: float) -> dict[str, Point | None]:
-    return {name: reference_of(case, points, name, order) for name in _REFERENCES}
+def _limits(case: Case, solved: Solved) -> dict[str, Point | None]:
+    return {name: reference_of(case, solved.points, name, solved.order) for name in REFERENCES}
 
 
-def _told(limits: Mapping[str, Point | None]) -> str:
-    """The limits, and how far they are from each other."""
-    sentences = []
+def _told(limits: Mapping[str, Point | None], order: float) -> str:
+    """The order and the limits, and how far these are from each other."""
+    sentences = [f"Order {order:.2f}."]
     for name, limit in limits.items():
         if limit is None or limit.tip is None:
             sentences.append(f"There is no limit by {name}.")
@@ -103,14 +116,14 @@ def _error(point: Point, limits: Mapping[str, Point | None]) -> float | None:
     return _distance(point, first)
 
 
-def _summary(cases: Mapping[Case, Sequence[Point]], order: float) -> str:
+def _summary(cases: Mapping[Case, Solved]) -> str:
     rows = []
     for key, family in FAMILIES.items():
         for is_limit in (False, True) if family.is_extrapolated else (False,):
             cells = []
-            for case, points in cases.items():
-                chosen = [p for p in points if p.family == key and p.is_limit == is_limit]
-                cells.append(_seconds(chosen, _limits(case, points, order)))
+            for case, solved in cases.items():
+                chosen = [p for p in solved.points if (p.family, p.is_limit) == (key, is_limit)]
+                cells.append(_seconds(chosen, _limits(case, solved)))
             rows.append([family.name + (", limits" if is_limit else ""), *cells])
     return table(["elements", *(case.title for case in cases)], rows)
 

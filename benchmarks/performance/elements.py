@@ -10,11 +10,21 @@ from typing import Any, Final
 import numpy as np
 
 from pagd.catalogue import NamedDesign
-from performance.fits import FloatArray, extrapolated
+from performance.fits import EDGE_ORDER, FloatArray, common_order, extrapolated
 from performance.options import free_config
 from performance.runs import Measurement, Run
 
-__all__ = ["FAMILIES", "Case", "Family", "Point", "points_of", "reference_of", "runs_of"]
+__all__ = [
+    "FAMILIES",
+    "REFERENCES",
+    "Case",
+    "Family",
+    "Point",
+    "order_of",
+    "points_of",
+    "reference_of",
+    "runs_of",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +43,9 @@ FAMILIES: Final[Mapping[str, Family]] = {
     "element_pressure": Family("tetrahedra P2–P0", "gmsh", "element_pressure", False),
     "hexahedra": Family("hexahedra, 27 nodes", "structured", "hexahedron"),
 }
+
+#: Families whose limits errors are measured from: the first that is known.
+REFERENCES: Final = ("hexahedra", "tetrahedra")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -98,6 +111,23 @@ def runs_of(case: Case, config: str | None) -> dict[tuple[str, str], Run]:
     return found
 
 
+def order_of(case: Case, measured: Mapping[tuple[str, str], Measurement]) -> float:
+    """Return the order with which both families have the same limit, of a mesh and its halves.
+
+    That of the inward edges where these are not known, or where there is no such order.
+    """
+    pairs = []
+    for family in REFERENCES:
+        single = [_point(family, name, one) for (of, name), one in measured.items() if of == family]
+        for coarse, fine in _halves_of(case, single, family):
+            if coarse.tip is not None and fine.tip is not None:
+                pairs.append((coarse.tip, fine.tip))
+    if len(pairs) < len(REFERENCES):
+        return EDGE_ORDER
+    found = common_order(pairs[0], pairs[1], 2.0)
+    return EDGE_ORDER if found is None else found
+
+
 def points_of(
     case: Case, measured: Mapping[tuple[str, str], Measurement], order: float
 ) -> list[Point]:
@@ -118,14 +148,14 @@ def points_of(
         points += single
         plain = [point for point in single if "halved" not in point.name]
         pairs = [*pairwise(_descending(plain)), *_halves_of(case, single, key)]
-        points += [_limit(pair, order) for pair in pairs if family.is_extrapolated]
+        points += [_limit(*pair, order) for pair in pairs if family.is_extrapolated]
     return points
 
 
 def reference_of(case: Case, points: Sequence[Point], family: str, order: float) -> Point | None:
     """Return the limit of a family, of a mesh and its halves; None where these are not known."""
     pairs = _halves_of(case, [point for point in points if not point.is_limit], family)
-    limits = [_limit(pair, order) for pair in pairs]
+    limits = [_limit(*pair, order) for pair in pairs]
     return limits[0] if limits and limits[0].tip is not None else None
 
 
@@ -167,13 +197,12 @@ def _seconds(figures: Mapping[str, Any]) -> float:
     return float(sum(figures["stages_cpu_s"].values()) if whole is None else whole)
 
 
-def _limit(pair: tuple[Point, Point], order: float) -> Point:
-    coarse, fine = pair
+def _limit(coarse: Point, fine: Point, order: float) -> Point:
     name = f"{coarse.name} and {fine.name}"
     trouble = coarse.trouble or fine.trouble
     if trouble or coarse.tip is None or fine.tip is None:
         return Point(coarse.family, name, trouble=trouble, is_limit=True)
-    ratio = _ratio(coarse, fine)
+    ratio = 2.0 if fine.name == f"{coarse.name} halved" else _ratio(coarse, fine)
     if ratio <= 1:
         reason = f"{fine.name} mm gives no finer mesh than {coarse.name} mm."
         return Point(coarse.family, name, trouble=reason, is_limit=True)

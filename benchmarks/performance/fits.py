@@ -8,13 +8,23 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["EDGE_ORDER", "extrapolated", "power", "relative_distance", "seconds_at"]
+__all__ = [
+    "EDGE_ORDER",
+    "common_order",
+    "extrapolated",
+    "power",
+    "relative_distance",
+    "seconds_at",
+]
 
 FloatArray = NDArray[np.float64]
 
-#: Order in which the tip converges on uniform meshes: inward edges of the cavity, 2 × 0.5445
-#: (Williams 1952); docs/verification.md shows it.
+#: Order that the error of the tip comes down to on ever finer meshes: inward edges of the cavity,
+#: 2 × 0.5445 (Williams 1952); docs/verification.md shows it.
 EDGE_ORDER = 1.089
+
+#: Orders among which a common one is looked for.
+_ORDERS = np.linspace(0.8, 4.0, 321)
 
 
 def power(x: Sequence[float], y: Sequence[float]) -> float | None:
@@ -46,6 +56,33 @@ def extrapolated(
     if not ratio > 1:
         raise ValueError(f"ratio = {ratio:g}: the coarse mesh must be the coarser one")
     return np.asarray(fine + (fine - coarse) / (ratio**order - 1.0))
+
+
+def common_order(
+    first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray], ratio: float
+) -> float | None:
+    """Return the order with which two kinds of meshes have the same limit, as nearly as they can.
+
+    Parameters
+    ----------
+    first, second
+        The quantity on a coarse and on a fine mesh of either kind.
+    ratio
+        Of the element sizes, coarse by fine; above 1.
+
+    Returns
+    -------
+    float
+        None where no order between 0.8 and 4 brings the limits nearest to each other.
+    """
+    gaps = [
+        np.linalg.norm(
+            extrapolated(*first, ratio, float(order)) - extrapolated(*second, ratio, float(order))
+        )
+        for order in _ORDERS
+    ]
+    best = int(np.argmin(gaps))
+    return float(_ORDERS[best]) if 0 < best < len(_ORDERS) - 1 else None
 
 
 def relative_distance(found: FloatArray, limit: FloatArray) -> float:

@@ -16,10 +16,13 @@ from pagd.errors import InputError
 from pagd.record import read_record
 from robustness.study import Study
 
-__all__ = ["ALLOWED_ERROR", "TipError", "every_kth", "finer_study", "tip_error"]
+__all__ = ["ALLOWED_ERROR", "USUAL_ORDER", "TipError", "every_kth", "finer_study", "tip_error"]
 
 #: Discretisation error of the tip that is allowed, by its displacement.
 ALLOWED_ERROR: Final = 0.03
+
+#: Order of the error on meshes of these sizes: benchmarks/elements.py finds about 2.
+USUAL_ORDER: Final = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +37,10 @@ class TipError:
         The last one that both meshes have reached.
     unknowns, finer_unknowns
         Of the two meshes.
-    difference, error
-        Distance of the tips of both meshes, and estimated distance to the limit; by the
-        displacement of the limit.
+    difference, error, largest_error
+        Distance of the tips of both meshes, and its estimated distance to the limit; by the
+        displacement of the limit. Estimates are with the orders :data:`USUAL_ORDER` and, for
+        the largest, that of the inward edges.
     """
 
     design_id: str
@@ -46,6 +50,7 @@ class TipError:
     finer_unknowns: int | None
     difference: float
     error: float
+    largest_error: float
 
     def as_dict(self) -> dict[str, Any]:
         """All attributes, ready for JSON."""
@@ -74,9 +79,7 @@ def finer_study(study: Study, count: int) -> Study:
     return Study(study.out / "halved", every_kth(study.designs, count), config, halvings=1)
 
 
-def tip_error(
-    named: NamedDesign, folder: Path, finer: Path, order: float = EDGE_ORDER
-) -> TipError | None:
+def tip_error(named: NamedDesign, folder: Path, finer: Path) -> TipError | None:
     """Return the error of a design's tip from the folders of its mesh and of the halves of that.
 
     None where they have no state under pressure in common.
@@ -87,15 +90,15 @@ def tip_error(
     if not common:
         return None
     coarse, fine = (tip[max(common)] for tip in tips)
-    limit = extrapolated(coarse, fine, 2.0, order)
+    limits = [extrapolated(coarse, fine, 2.0, order) for order in (USUAL_ORDER, EDGE_ORDER)]
     return TipError(
         named.name,
         named.design.mode,
         max(common),
         unknowns[0],
         unknowns[1],
-        float(np.linalg.norm(coarse - fine) / np.linalg.norm(limit)),
-        relative_distance(coarse, limit),
+        float(np.linalg.norm(coarse - fine) / np.linalg.norm(limits[0])),
+        *(relative_distance(coarse, limit) for limit in limits),
     )
 
 
