@@ -15,7 +15,7 @@ import pytest
 from pagd.record import read_record
 from pagd.tables import read_rows
 
-from .conftest import GENERATIVE, STRAIGHT, Project, undeclared_tables
+from .conftest import GENERATIVE, ROOT, STRAIGHT, Project, undeclared_tables
 
 STAGES = {
     "dataset": "dataset",
@@ -167,6 +167,25 @@ def test_another_seed_runs_the_designs_whose_rows_change(copied: Project) -> Non
     changed = [name for name in after if after[name] != before.get(name)]
     assert changed
     assert jobs(copied.snakemake("--dry-run", *seed))["solve"] == len(changed)
+
+
+def test_the_sweep_takes_all_and_leaves_what_is_done(copied: Project) -> None:
+    def sweep(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return copied.snakemake("--profile", str(ROOT / "profiles" / "sweep"), *arguments)
+
+    before = selected(copied)
+    assert sweep("--", "results/selection").returncode == 0
+    new = selected(copied).keys() - before.keys()
+    assert len(new) + len(before) == GENERATIVE["generator"]["designs"]
+    planned = jobs(sweep("--dry-run", "--", "summary"))
+    for stage in ("geometry", "repair", "mesh", "solve", "metrics"):
+        assert planned[stage] == len(new)
+
+    # The default profile has nothing to add to what the sweep has made.
+    target = f"results/designs/{min(new)}/metrics"
+    assert sweep("--", target).returncode == 0
+    everything = ("--config", 'selection={"designs": 1000000}')
+    assert "Nothing to be done" in copied.snakemake(*everything, "--", target).stderr
 
 
 def test_a_generated_design_alone(copied: Project) -> None:
