@@ -12,7 +12,6 @@ meanwhile.
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 from pathlib import Path
 
@@ -27,7 +26,6 @@ from sweep.sample import Sample
 
 from pagd import config as configuration
 from pagd.errors import InputError
-from pagd.files import replaced_file
 
 _SECTION = "sweep"
 
@@ -73,20 +71,8 @@ def _dry_run(options: argparse.Namespace, config: configuration.Config) -> DryRu
     count = options.dry_run_designs
     print(f"dry run of {count} designs …", flush=True)
     project = Project(options.out.resolve() / "dry_run")
-    project.write(config | {"designs": {"random": "config/designs.csv"}})
-    _write_table(project.folder / "config" / "designs.csv", count, options.seed, config)
+    project.write_table_alone(drawn_designs(count, options.seed, config), config)
     return project.dry_run(count)
-
-
-def _write_table(path: Path, count: int, seed: int, config: configuration.Config) -> None:
-    rows = [
-        {"name": named.name, **named.design.as_dict()}
-        for named in drawn_designs(count, seed, config)
-    ]
-    with replaced_file(path) as temporary, temporary.open("w", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def _parser() -> argparse.ArgumentParser:

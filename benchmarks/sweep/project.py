@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import shutil
 import subprocess
 import sys
@@ -13,6 +15,7 @@ from typing import Any, Final
 
 import yaml
 
+from pagd.catalogue import NamedDesign
 from pagd.errors import InputError
 from pagd.files import write_text
 
@@ -48,6 +51,16 @@ class Project:
         shutil.copytree(ROOT / "config", self.folder / "config", dirs_exist_ok=True)
         text = yaml.safe_dump(dict(config), allow_unicode=True)
         write_text(self.folder / "config" / "config.yaml", text)
+
+    def write_table_alone(self, designs: Sequence[NamedDesign], config: Mapping[str, Any]) -> None:
+        """Write a configuration whose designs are those given, in a table, and no others."""
+        self.write({**config, "designs": {"random": "config/designs.csv"}})
+        rows = [{"name": named.name, **named.design.as_dict()} for named in designs]
+        text = io.StringIO()
+        writer = csv.DictWriter(text, fieldnames=list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+        write_text(self.folder / "config" / "designs.csv", text.getvalue())
 
     def run(
         self, cores: int, targets: Sequence[str], look: Callable[[], None] = lambda: None
