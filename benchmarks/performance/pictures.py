@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from matplotlib.ticker import LogFormatter
+
 from pagd.figures.style import FAINT, new_figure, save
 from performance.chambers import powers_of
 from performance.cores import Crew, Throughput
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_chambers", "draw_cores", "draw_unknowns"]
 
-_SIZE = (9.0, 3.6)
+_SIZE = (11.0, 3.6)
 
 #: Parts of the time that are drawn, where they are known.
 _PARTS = ("all", "factorisation", "assembly", "solution", "mesh", "rest")
@@ -33,9 +35,9 @@ def draw_unknowns(series: Mapping[float, Measurement], out: Path) -> None:
     for part in _PARTS:
         _curve(times, unknowns, [one[part] for one in parts], part)
     _curve(memory, unknowns, [one["peak_memory_MB"] for one in figures], "peak memory")
-    _dress(times, "unknowns", "core-seconds", "Time of the whole path")
-    _dress(memory, "unknowns", "MB", "Memory")
-    times.legend()
+    _dress(times, unknowns, ("unknowns", "core-seconds", "Time of the whole process"))
+    _dress(memory, unknowns, ("unknowns", "MB", "Peak memory"))
+    _explain(times)
     save(figure, out)
 
 
@@ -53,10 +55,10 @@ def draw_chambers(series: Mapping[int, Measurement], out: Path) -> None:
     _curve(factors, list(complete), nonzeros, "factor non-zeros")
     power = powers_of(series).get("time of an iteration")
     title = "Newton iteration" + ("" if power is None else f": time ∝ N to the {power:.2f}")
-    _dress(times, "chambers N", "core-seconds", title)
-    _dress(factors, "chambers N", "number", "Size of the system")
-    times.legend()
-    factors.legend()
+    _dress(times, list(complete), ("chambers N", "core-seconds", title))
+    _dress(factors, list(complete), ("chambers N", "number", "Size of the system"))
+    _explain(times)
+    _explain(factors)
     save(figure, out)
 
 
@@ -72,7 +74,7 @@ def draw_cores(found: Mapping[Crew, Throughput], out: Path) -> None:
             label = f"one process, {crew.threads} threads"
             axes.plot([crew.cores], [each.per_hour], "D", label=label)
     first = next(iter(alone.values())).per_hour
-    axes.plot(cores, [first * one for one in cores], "--", color=FAINT, label="as many times")
+    axes.plot(cores, [first * one for one in cores], "--", color=FAINT, label="in proportion")
     axes.set(xlabel="cores", ylabel="designs an hour", title="Designs at once", ylim=(0, None))
     axes.set_xticks(cores)
     axes.legend()
@@ -84,5 +86,16 @@ def _curve(axes: Axes, x: Sequence[float], y: Sequence[Any], label: str) -> None
         axes.plot(x, y, "o-", label=label)
 
 
-def _dress(axes: Axes, along: str, up: str, title: str) -> None:
+def _dress(axes: Axes, x: Sequence[float], said: tuple[str, str, str]) -> None:
+    """Logarithmic axes with plain numbers, those along at what was measured."""
+    along, up, title = said
     axes.set(xlabel=along, ylabel=up, title=title, xscale="log", yscale="log")
+    axes.set_xticks(x, [f"{value:,.0f}" for value in x])
+    axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+    axes.yaxis.set_major_formatter("{x:,g}")
+    axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
+
+
+def _explain(axes: Axes) -> None:
+    """Say beside the axes which line is which."""
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
