@@ -229,7 +229,7 @@ def test_a_better_citation_runs_nothing(changed: Project) -> None:
 
 
 def test_a_mesher_out_of_time_is_recorded(project: Project) -> None:
-    project.write(STRAIGHT, THIN, mesh={"time_limit_s": 0.001})
+    project.write(STRAIGHT, THIN, mesh={"time_limit_s": 0.001, "meshers": ["gmsh"]})
     answer = project.snakemake()
     assert answer.returncode == 0, answer.stderr
     rows = {row["name"]: row for row in read_rows(project / "summary/performance.parquet")}
@@ -344,10 +344,13 @@ def test_another_mesh_than_the_solved_one_is_refused(
 
 
 def test_a_pair_of_surfaces_is_meshed_alike(finished: Project, tmp_path: Path) -> None:
-    folder = finished / "designs/slanted/repair"
-    pair = ("--body", folder / "body.stl", "--base", folder / "base.stl")
-    assert pagd(tmp_path, "mesh", *pair, "--size-mm", 6, "--out", "mesh") == 0
-    own, chain = read_record(tmp_path / "mesh"), read_record(finished / "designs/slanted/mesh")
+    design = finished / "designs/slanted"
+    folders = ("--geometry", design / "geometry", "--repair", design / "repair")
+    pair = ("--body", design / "repair/body.stl", "--base", design / "repair/base.stl")
+    settings = ("--size-mm", 6, "--meshers", "gmsh")
+    assert pagd(tmp_path, "mesh", *folders, *settings, "--out", "chain") == 0
+    assert pagd(tmp_path, "mesh", *pair, *settings, "--out", "mesh") == 0
+    own, chain = read_record(tmp_path / "mesh"), read_record(tmp_path / "chain")
     assert own.design_id == "body"
     assert own.figures["tets"] == chain.figures["tets"]
     assert own.figures["volume_mm3"] == pytest.approx(chain.figures["volume_mm3"])
@@ -369,7 +372,7 @@ def test_a_run_that_ends_early_is_measured_as_far_as_it_came(
     assert record.status == "bending_limit"
     assert "it bends by" in str(record.reason)
     # The state at which it ended is the last one measured.
-    assert 2.0 < record.figures["pressure_kPa"] < 4.0
+    assert 2.0 < record.figures["pressure_kPa"] <= 4.0
     assert record.figures["bending_deg"] > limit
     reached = read_rows(tmp_path / "metrics/performance.parquet")
     assert [row["pressure_kPa"] for row in reached[:-1]] == [0.0, 2.0]
