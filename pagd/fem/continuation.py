@@ -35,6 +35,9 @@ class StepControl:
         Largest factor after a try that did not converge.
     order
         Degree of the polynomial.
+    trust
+        A first correction beyond so many times the wanted one gives up a try at once, where the
+        guess is made of three states or more: something new has begun, such as a contact.
     patience
         Tries on end that may fail to converge, however large the step is.
     """
@@ -46,6 +49,7 @@ class StepControl:
     cut: float = 0.25
     retry: float = 0.6
     order: int = 4
+    trust: float = 4.0
     patience: int = 20
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
@@ -59,6 +63,10 @@ class StepControl:
     def factor(self, first_correction: float, states: int) -> float:
         """Factor from a step that converged to the next one, within the limits."""
         return min(max(self._factor(first_correction, states), self.cut), self.growth)
+
+    def largest_first(self, states: int) -> float:
+        """Largest first correction, in mm, of a guess through ``states`` states."""
+        return self.trust * self.wanted_correction if states > 2 else math.inf
 
     def _factor(self, first_correction: float, states: int) -> float:
         if not 0 < first_correction < math.inf:
@@ -184,7 +192,8 @@ class Continuation:
                 taken, known = load - states[-1].load, len(states)
                 # A guess half-way back would not have the values that are prescribed at its load.
                 before = None if self._boundary else states[-1]
-                result = self._newton.solve(self._guess(states, load), before=before)
+                guess, trust = self._guess(states, load), control.largest_first(known)
+                result = self._newton.solve(guess, before=before, largest_first=trust)
                 correction = result.corrections[0] if result.corrections else math.inf
                 path = tried(path, result)
                 if result.state is None or result.is_unstable:

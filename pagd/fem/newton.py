@@ -19,6 +19,7 @@ section 5.4) as long as each correction is much smaller than the one before.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -138,6 +139,8 @@ class Newton:
         self._displacements = displacements
         self._multipliers = int((assembly.free >= displacements).sum())
         self._solution = self._by_load = np.zeros(0)
+        # So many solves to come without iterated stresses, and after the next failure.
+        self._plain_solves, self._back_off = 0, 1
         self._analyse()
 
     def _analyse(self) -> None:
@@ -145,34 +148,49 @@ class Newton:
         self.solver.analyse(self._pattern.starts, self._pattern.columns)
 
     def solve(
-        self, guess: State, conjugate: float | None = None, before: State | None = None
+        self,
+        guess: State,
+        conjugate: float | None = None,
+        before: State | None = None,
+        largest_first: float = math.inf,
     ) -> NewtonResult:
         """Iterate from ``guess``; failing to converge is a result, not an error.
 
-        At the load of the guess, or at the given value of its ``conjugate``. From the state
+        At the load of the guess, or at the given value of its ``conjugate``. Given up at once where
+        the first correction of a node is larger than ``largest_first``, in mm. From the state
         ``before`` the guess can be shortened. What fails with stresses that are iterated is tried
-        with those of the displacements; where they do better, it stays so.
+        with those of the displacements; where they do better, it stays so for a while.
         """
-        result = self._solve(guess, conjugate, before)
+        self._plain_solves -= 1
+        if self._plain_solves >= 0:
+            self.assembly.iterates_stresses = False
+            return self._solve(guess, conjugate, before, largest_first)
+        self.assembly.iterates_stresses = True
+        result = self._solve(guess, conjugate, before, largest_first)
         works = result.state is not None and not result.is_unstable
-        if works or result.iterations == 0 or not self.assembly.iterates_stresses:
+        if works or result.iterations < 2 or not self.assembly.iterates_stresses:
+            self._back_off = 1
             return result
-        # Far from the solution, where the material stiffens much, a stress along its tangent can
-        # be one that no state has: it spoils the iteration, and the signs of the pivots.
+        # Far from the solution, where walls meet or the material stiffens much, a stress along
+        # the tangent can be one that no state has: it spoils the iteration, and the signs of the
+        # pivots.
         self.assembly.iterates_stresses = False
-        again = self._solve(guess, conjugate, before)
-        if again.state is None or again.is_unstable:
-            self.assembly.iterates_stresses = True
+        again = self._solve(guess, conjugate, before, largest_first)
+        if again.state is not None and not again.is_unstable:
+            self._plain_solves, self._back_off = self._back_off, 2 * self._back_off
         return replace(
             again,
             iterations=again.iterations + result.iterations,
             corrections=again.corrections + result.corrections,
         )
 
-    def _solve(self, guess: State, conjugate: float | None, before: State | None) -> NewtonResult:
+    def _solve(
+        self, guess: State, conjugate: float | None, before: State | None, largest_first: float
+    ) -> NewtonResult:
         settings = self.settings
         corrections: list[float] = []
         full: list[float] = []
+        largest_first = min(largest_first, settings.largest_correction)
         state, linearised = self._first(guess, before)
         if not np.isfinite(linearised[0]):
             return NewtonResult(None, 0, (), "the first guess inverts elements")
@@ -185,7 +203,8 @@ class Newton:
             size = self._largest(correction)
             full.append(size)
             corrections.append(size)
-            if not size < settings.largest_correction or _diverges(full, settings):
+            largest = settings.largest_correction if len(full) > 1 else largest_first
+            if not size < largest or _diverges(full, settings):
                 break
             unstable = self._unstable_directions()
             trial = _loaded(self.assembly.advance(state, correction), load)
