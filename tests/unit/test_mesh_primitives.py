@@ -1,6 +1,9 @@
 import numpy as np
 import pytest
 
+from pagd.errors import InputError
+from pagd.fem.cells import reference_geometry
+from pagd.mesh.blocks import check_blocks, hexahedra, wedges
 from pagd.mesh.checks import check_actuator
 from pagd.mesh.primitives import box, cylinder_quarter, hollow_block, sphere_octant
 from pagd.mesh.quality import mesh_quality
@@ -55,3 +58,48 @@ def test_hollow_block_is_an_actuator(half: bool) -> None:
     check_actuator(mesh)
     assert ("symmetry" in mesh.surfaces) == half
     assert mesh_quality(mesh).volume_mm3 == pytest.approx(44.0 if half else 88.0)
+
+
+@pytest.mark.parametrize(("blocks", "shares"), [("hexahedra", 1.0), ("both", 0.5), ("wedges", 0.0)])
+def test_cells_of_boxes_are_hexahedra_or_pairs_of_wedges(blocks: str, shares: float) -> None:
+    mesh = box((1.0, 2.0, 3.0), (2, 3, 2), paper_layer=1, blocks=blocks)
+    mesh.check()
+    check_blocks(mesh)
+    assert (mesh.hexahedra, mesh.wedges) == (12 * shares, 24 * (1 - shares))
+    plain = box((1.0, 2.0, 3.0), (2, 3, 2), paper_layer=1)
+    np.testing.assert_array_equal(mesh.points, plain.points)
+    assert set(mesh.surfaces) == set(plain.surfaces)
+    assert volume_of_blocks(mesh) == pytest.approx(6.0)
+
+
+def volume_of_blocks(mesh: Mesh) -> float:
+    """By the functions of 27 and 18 nodes."""
+    cells = (hexahedra(mesh), wedges(mesh))
+    volumes = [reference_geometry(mesh.points, nodes)[1].sum() for nodes in cells if len(nodes)]
+    return float(sum(volumes))
+
+
+@pytest.mark.parametrize("blocks", ["hexahedra", "both", "wedges"])
+def test_blocks_of_a_cylinder_and_around_a_void(blocks: str) -> None:
+    curved = cylinder_quarter(10.0, 15.0, 2.0, (2, 4, 1), blocks)
+    hollow = hollow_block((3.0, 6.0, 4.5), (3, 3, 3), ((1, 2),) * 3, 1, blocks=blocks)
+    for mesh, volume in ((curved, np.pi / 4 * 125 * 2), (hollow, 78.0)):
+        mesh.check()
+        check_blocks(mesh)
+        assert volume_of_blocks(mesh) == pytest.approx(volume, rel=1e-4)
+    check_actuator(hollow)
+
+
+def test_blocks_of_a_sphere_are_curved_wedges() -> None:
+    mesh = sphere_octant(10.0, 15.0, (2, 4), "wedges")
+    mesh.check()
+    check_blocks(mesh)
+    assert (mesh.hexahedra, mesh.wedges) == (0, 2 * 4 * 4)
+    assert volume_of_blocks(mesh) == pytest.approx(np.pi / 6 * (15**3 - 10**3), rel=3e-3)
+
+
+def test_unknown_blocks_are_refused() -> None:
+    with pytest.raises(InputError, match=r"blocks = 'bricks' must be hexahedra, wedges or both\."):
+        box((1.0, 1.0, 1.0), (1, 1, 1), blocks="bricks")
+    with pytest.raises(InputError, match=r"blocks = 'hexahedra', but those of a sphere must be"):
+        sphere_octant(10.0, 15.0, (1, 1), "hexahedra")
