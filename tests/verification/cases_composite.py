@@ -1,7 +1,8 @@
 """The paper in its own setting: a strip of the base of an actuator, the paper in the middle.
 
-Three ways: the paper as pagd's shell; as a membrane of the same stretch stiffness without bending
-stiffness; as a layer of thin solid elements of its own, with no theory of shells at all.
+The ways: the paper as pagd's shell, between tetrahedra and between hexahedra; as a membrane of the
+same stretch stiffness without bending stiffness; as a layer of thin solid elements of its own, with
+no theory of shells at all.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ HEIGHT = 2.12
 BASE = elastomer(NEO_HOOKE, poisson_ratio=0.4999)
 SHEAR = 2 * NEO_HOOKE[0]
 PAPER = default_paper()
-WAYS = ("shell", "layer", "membrane")
+BETWEEN_BLOCKS = "shell between hexahedra"
+WAYS = ("shell", "layer", "membrane", BETWEEN_BLOCKS)
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,8 @@ class Strip:
         """The strip, z from −h/2 to h/2; ``paper`` is the middle, or there is a layer for it."""
         layers = 3 if way == "layer" else 2
         size = (self.length, self.width, HEIGHT)
-        flat = box(size, (*self.cells, layers), None if way == "layer" else 1)
+        blocks = "hexahedra" if way == BETWEEN_BLOCKS else None
+        flat = box(size, (*self.cells, layers), None if way == "layer" else 1, blocks)
         heights = np.array([0, HEIGHT / 2, HEIGHT])
         if way == "layer":
             half = PAPER.thickness / 2
@@ -55,7 +58,7 @@ class Strip:
         even = np.linspace(0, HEIGHT, layers + 1)
         points = flat.points.copy()
         points[:, 2] = np.interp(points[:, 2], even, heights) - HEIGHT / 2
-        return Mesh(points=points, tets=flat.tets, surfaces=flat.surfaces)
+        return replace(flat, points=points)
 
 
 def terms_of(mesh: Mesh, way: str, *, is_bent: bool) -> list[EnergyTerm]:
@@ -67,8 +70,9 @@ def terms_of(mesh: Mesh, way: str, *, is_bent: bool) -> list[EnergyTerm]:
         first = mesh.points.size + around.pressures
         return [around, TaylorHoodSolid(mesh.points, mesh.tets[inside], _solid_paper(), first)]
     faces = mesh.surfaces["paper"]
-    terms: list[EnergyTerm] = [solid_of(mesh, BASE), Membrane(mesh.points, faces, PAPER)]
-    if way == "shell":
+    element = "hexahedron" if way == BETWEEN_BLOCKS else "taylor_hood"
+    terms: list[EnergyTerm] = [solid_of(mesh, BASE, element), Membrane(mesh.points, faces, PAPER)]
+    if way != "membrane":
         nodes, y = np.unique(faces), mesh.points[np.unique(faces), 1]
         sides = nodes[np.isclose(y, 0) | np.isclose(y, mesh.points[:, 1].max())]
         clamped = nodes[np.isclose(mesh.points[nodes, 0], 0)]
@@ -148,7 +152,7 @@ def bent_strip() -> list[Figure]:
                 tolerance=0.02,
                 unit="N mm",
             )
-            for way in ("shell", "layer")
+            for way in ("shell", "layer", BETWEEN_BLOCKS)
         ),
     ]
 
@@ -221,6 +225,6 @@ def twisted_strip() -> list[Figure]:
                 value=found[way] - found["membrane"],
                 tolerance=0.01,
             )
-            for way in ("shell", "layer")
+            for way in ("shell", "layer", BETWEEN_BLOCKS)
         ),
     ]

@@ -9,7 +9,7 @@ from actuators import default_elastomer
 from cases_inflation import INNER, OUTER, POISSON_RATIO, Sphere
 from closed_forms import NEO_HOOKE, limit_point, sphere_pressure
 from figure import Figure
-from solving import FloatArray, elastomer, held, solid_of, solve
+from solving import BLOCKS, FloatArray, elastomer, held, label, solid_of, solve, tolerance_of
 
 from pagd.fem.assembly import Assembly
 from pagd.fem.conjugate import ConjugatePath
@@ -53,27 +53,29 @@ def homogeneous_states() -> list[Figure]:
     Nominal stress by the reactions. Nearly incompressible (ν = 0.49999) against closed forms of
     incompressible bodies, which differ by p/K, some 1e-4.
     """
-    return [figure for state in STATES for figure in _homogeneous(state)]
+    elements = ("taylor_hood", "hexahedron", "wedge")
+    return [figure for e in elements for state in STATES for figure in _homogeneous(state, e)]
 
 
-def _homogeneous(state: Homogeneous) -> list[Figure]:
+def _homogeneous(state: Homogeneous, element: str) -> list[Figure]:
     material = replace(default_elastomer(), poisson_ratio=0.49999)
-    mesh = box((1.0, 1.0, 1.0), (1, 1, 1))
+    mesh = box((1.0, 1.0, 1.0), (1, 1, 1), blocks=BLOCKS.get(element))
     sides = {f"{axis}1": axis for axis in state.stretched + state.held}
     fixed = held(mesh, x0="x", y0="y", z0="z", **sides)
     along = np.array([axis in state.stretched for axis in "xyz"], dtype=np.float64)
     solved = solve(
         mesh.points,
-        [solid_of(mesh, material)],
+        [solid_of(mesh, material, element)],
         fixed,
         [s - 1 for s in STRETCHED],
         lambda load: load * mesh.points * along,
+        tolerance=tolerance_of(element),
     )
     end = mesh.nodes_of("x1")
     c10, c20 = (material.coefficients[name] for name in ("C10", "C20"))
     return [
         Figure(
-            name=f"Elastosil M4601, {state.name}, λ = {stretch:g}: nominal stress",
+            name=f"Elastosil M4601, {state.name}{label(element)}, λ = {stretch:g}: nominal stress",
             source=f"closed form: Yeoh, incompressible, {state.name}",
             reference=1e3 * state.stress(stretch, c10, c20),
             value=1e3 * float(found.reactions[end, 0].sum()),

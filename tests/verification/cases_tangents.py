@@ -14,7 +14,9 @@ from pagd.fem.bending import bending_terms
 from pagd.fem.contact import ContactLaw, FaceContact
 from pagd.fem.follower_pressure import FollowerPressure
 from pagd.fem.membrane import Membrane
+from pagd.fem.solid import ElementPressureSolid
 from pagd.fem.term import ElementSystem, EnergyTerm
+from pagd.mesh.blocks import hexahedra, wedges
 from pagd.mesh.primitives import hollow_block
 from pagd.mesh.types import Mesh
 
@@ -30,7 +32,8 @@ def tangents() -> list[Figure]:
     The default law limits that, which changes iterations, not forces: its forces alone are shown,
     where walls are pressed into each other so deep that it does.
     """
-    mesh = hollow_block((3.0, 6.0, 4.5), (3, 3, 3), ((1, 2), (1, 2), (1, 2)), 1)
+    void = ((1, 2), (1, 2), (1, 2))
+    mesh = hollow_block((3.0, 6.0, 4.5), (3, 3, 3), void, 1, blocks="both")
     return [
         *(figure for name, make in TERMS.items() for figure in _derivatives(name, mesh, make)),
         _derivatives("contact, default law", mesh, _default_contact)[0],
@@ -73,6 +76,12 @@ def _bending(mesh: Mesh) -> EnergyTerm:
 TERMS: dict[str, Callable[[Mesh], EnergyTerm]] = {
     "solid, P2-P1": lambda mesh: solid_of(mesh, default_elastomer()),
     "solid, P2-P0": lambda mesh: solid_of(mesh, default_elastomer(), "element_pressure"),
+    "solid, Q2-P-1, hexahedra": lambda mesh: ElementPressureSolid(
+        mesh.points, hexahedra(mesh), default_elastomer()
+    ),
+    "solid, Q2-P-1, wedges": lambda mesh: ElementPressureSolid(
+        mesh.points, wedges(mesh), default_elastomer()
+    ),
     "membrane of the paper": lambda mesh: Membrane(
         mesh.points, mesh.surfaces["paper"], default_paper()
     ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cases_actuators import balance_of_energy, element_table, other_library, resultants, symmetries
 from cases_blocked import balance_of_forces, plate_and_edge, small_pressure
+from cases_blocks import convergence_of_blocks, no_locking
 from cases_calculix import (
     bending_on_finer_meshes,
     laws_in_a_deck,
@@ -39,8 +40,10 @@ CASES: tuple[Case, ...] = (
     Case(rows=walls_under_pressure, group=Group.solids),
     Case(rows=balloon, group=Group.solids),
     Case(rows=block_bending, group=Group.solids),
+    Case(rows=no_locking, group=Group.solids),
     Case(rows=cook_membrane, group=Group.solids),
     Case(rows=convergence, group=Group.rates),
+    Case(rows=convergence_of_blocks, group=Group.rates),
     Case(rows=circle, group=Group.paper),
     Case(rows=elastica, group=Group.paper),
     Case(rows=bent_strip, group=Group.paper),

@@ -75,6 +75,22 @@ def cylinder_pressure(material: Coefficients, inner: float, outer: float, stretc
     return float(quad(lambda s: slope(s) / (s**2 - 1), outer_stretch, stretch)[0])
 
 
+def cylinder_mean_stress(
+    material: Coefficients, inner: float, outer: float, stretch: float, radius: float
+) -> float:
+    """Mean stress (MPa) at a radius of a thick cylinder in plane strain; λa is that of the inner.
+
+    σ_r + 2 W′(I₁) (I₁/3 − λ⁻²), with σ_r = −∫ W′(λ)/(λ² − 1) dλ from λb to λ.
+    """
+    slope = _slope(material, lambda s: (s, 1 / s, 1.0))
+    grown = inner**2 * (stretch**2 - 1)
+    here, outside = ((1 + grown / r**2) ** (1 / 2) for r in (radius, outer))
+    radial = -float(quad(lambda s: slope(s) / (s**2 - 1), outside, here)[0])
+    c10, c20 = material
+    first = here**2 + here**-2 + 1
+    return radial + 2 * (c10 + 2 * c20 * (first - 3)) * (first / 3 - here**-2)
+
+
 def bent_block(height: float, length: float, angle: float) -> tuple[float, float, float]:
     """α = length/angle and the radii r_a, r_b of a block bent into an arc (Rivlin 1949)."""
     alpha = length / angle

@@ -22,9 +22,10 @@ class DisplacementSolid(ElementPressureSolid):
     def __init__(self, points: FloatArray, nodes: IntArray, material: Elastomer) -> None:
         super().__init__(points, nodes, material)
         self.nodes = np.repeat(nodes, self.weights.shape[1], axis=0)
-        self.gradients = self.gradients.reshape(-1, 1, 10, 3)
+        self.gradients = self.gradients.reshape(-1, 1, 3, 10)
         self.weights = self.weights.reshape(-1, 1)
         self.dofs = node_dofs(self.nodes)
-        self._volumes = self.weights[:, 0]
-        self._slopes = np.zeros((len(self.nodes), 30))
-        self._changes = np.zeros(len(self.nodes))
+        self._values = np.ones((len(self.nodes), 1, 1))
+        self._stiffnesses = material.bulk_modulus / self.weights[:, :, None]
+        self._slopes = np.zeros((len(self.nodes), 1, 30))
+        self._changes = np.zeros((len(self.nodes), 1))

@@ -104,9 +104,9 @@ def solve_again(coarse: Body, fine: Body, found: Solved, fixed: BoolArray, load:
 
 
 def _corners(body: Body) -> IntArray:
-    if not isinstance(body.solid, TaylorHoodSolid):
+    if not isinstance(body.solids[0], TaylorHoodSolid):
         raise TypeError("refinement carries over the pressures of P2–P1 elements")
-    return body.solid.corners
+    return body.solids[0].corners
 
 
 def _nodal(body: Body, unknowns: FloatArray) -> FloatArray:

@@ -15,11 +15,14 @@ from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
 from pagd.fem.term import ElementSystem, EnergyTerm
 from pagd.materials import Elastomer
+from pagd.mesh.blocks import hexahedra, wedges
 from pagd.mesh.types import Mesh
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 Solid = TaylorHoodSolid | ElementPressureSolid
+#: What a mesh has to be made up of for an element (see :mod:`pagd.mesh.primitives`).
+BLOCKS = {"hexahedron": "hexahedra", "wedge": "wedges"}
 
 #: Displacements (n, 3) of all nodes at a load; those that are held are used.
 Prescribed = Callable[[float], FloatArray]
@@ -49,10 +52,28 @@ def elastomer(
 
 
 def solid_of(mesh: Mesh, material: Elastomer, element: str = "taylor_hood") -> Solid:
-    """The solid of a mesh; its pressure unknowns follow the displacements."""
+    """The solid of a mesh; its pressure unknowns follow the displacements.
+
+    Elements: ``taylor_hood`` (P2–P1), ``element_pressure`` (P2–P0), ``hexahedron`` and ``wedge``
+    (Q2–P−1), of which the whole mesh is made up.
+    """
     if element == "taylor_hood":
         return TaylorHoodSolid(mesh.points, mesh.tets, material, 3 * len(mesh.points))
-    return ElementPressureSolid(mesh.points, mesh.tets, material)
+    if element == "element_pressure":
+        return ElementPressureSolid(mesh.points, mesh.tets, material)
+    nodes = {"hexahedron": hexahedra, "wedge": wedges}[element](mesh)
+    assert len(np.unique(nodes)) == len(mesh.points), f"the mesh is not of {BLOCKS[element]} alone"
+    return ElementPressureSolid(mesh.points, nodes, material)
+
+
+def tolerance_of(element: str) -> float:
+    """Newton's tolerance (mm) for forces: those of condensed pressures are off by K times it."""
+    return 1e-5 if element == "taylor_hood" else 1e-9
+
+
+def label(element: str) -> str:
+    """What tells the rows of an element from those of the first one."""
+    return "" if element == "taylor_hood" else f", {element}"
 
 
 def held(mesh: Mesh, **surfaces: str) -> BoolArray:
