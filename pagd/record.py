@@ -128,7 +128,7 @@ class Meter:
     >>> with meter.part("read"):
     ...     _ = sum(range(10))
     >>> sorted(meter.timings_s())
-    ['cpu', 'read', 'wall']
+    ['cpu', 'read', 'read_cpu', 'wall']
     """
 
     wall_start: float = field(default_factory=time.perf_counter)
@@ -137,12 +137,16 @@ class Meter:
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """Add the wall time of the block to the part ``name``."""
-        start = time.perf_counter()
+        """Add the wall time of the block to the part ``name``, processor time to ``name_cpu``."""
+        wall, cpu = time.perf_counter(), _cpu_seconds()
         try:
             yield
         finally:
-            self.parts[name] = self.parts.get(name, 0.0) + time.perf_counter() - start
+            for key, spent in (
+                (name, time.perf_counter() - wall),
+                (f"{name}_cpu", _cpu_seconds() - cpu),
+            ):
+                self.parts[key] = self.parts.get(key, 0.0) + spent
 
     def timings_s(self) -> dict[str, float]:
         """Return the seconds so far, rounded to milliseconds."""

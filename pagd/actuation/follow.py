@@ -165,6 +165,8 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
         "linear_solver": solver.name,
         "stability_checked": solver.negative_pivots is not None,
     }
+    if solver.factor_nonzeros is not None:
+        figures["factor_nonzeros"] = solver.factor_nonzeros
     if followed.volume_controlled_from is not None:
         figures["volume_controlled_from_kPa"] = followed.volume_controlled_from
     return figures

@@ -162,6 +162,11 @@ class Assembly:
         """How much deeper (mm) than can be trusted any touching is at the state linearised last."""
         return max((term.excess for term in self._touching), default=0.0)
 
+    @property
+    def touching(self) -> tuple[int, ...]:
+        """How many points touch at the state linearised last, by term."""
+        return tuple(term.touching for term in self._touching)
+
     def advance(self, state: State, correction: FloatArray) -> State:
         """The state after ``correction`` (size,) of the unknowns, at the same load.
 

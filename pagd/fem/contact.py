@@ -180,6 +180,11 @@ class FaceContact:
         return max(-self.law.width - self.smallest_gap, 0.0)
 
     @property
+    def touching(self) -> int:
+        """How many points are in contact at the state seen last."""
+        return int((self._found.gaps < self.law.width).sum())
+
+    @property
     def is_complete(self) -> bool:
         """Whether every point in contact at the state seen last has its pair in ``dofs``."""
         found = self._found

@@ -40,6 +40,11 @@ class LinearSolver(Protocol):
         """
         ...
 
+    @property
+    def factor_nonzeros(self) -> int | None:
+        """Non-zeros of the factors; none where the solver cannot tell."""
+        ...
+
     def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
         """Take a pattern: row starts (m + 1,) and sorted columns (z,), the diagonal included."""
         ...
@@ -91,7 +96,7 @@ class PardisoSolver:
         34: 1,  # zero-based indices
     }
     _SYMMETRIC_INDEFINITE = -2
-    _PERTURBED_PIVOTS, _NEGATIVE_PIVOTS = 13, 22  # their numbers, outputs
+    _PERTURBED_PIVOTS, _FACTOR_NONZEROS, _NEGATIVE_PIVOTS = 13, 17, 22  # numbers, outputs
     _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
 
     def __init__(self) -> None:
@@ -144,6 +149,7 @@ class PardisoSolver:
             raise SingularMatrixError("the matrix has entries that are not finite")
         if not self._analysed:
             # Scaling looks at the values, so the analysis needs them.
+            self._parameters[self._FACTOR_NONZEROS] = -1  # asks for the number
             with self.clock.part("analysis"):
                 self._phase(self._ANALYSE, values, right)
             self._analysed = True
@@ -164,6 +170,11 @@ class PardisoSolver:
     def negative_pivots(self) -> int | None:
         """Number of negative eigenvalues of the matrix factorised last."""
         return int(self._parameters[self._NEGATIVE_PIVOTS])
+
+    @property
+    def factor_nonzeros(self) -> int | None:
+        """Non-zeros of the factors of the pattern analysed last."""
+        return int(self._parameters[self._FACTOR_NONZEROS]) or None
 
     def _check(self, values: FloatArray, right: FloatArray, result: FloatArray) -> None:
         """Pardiso replaces vanishing pivots and goes on: see whether the result is a solution."""
@@ -189,6 +200,7 @@ class SuperLUSolver:
     name = "superlu"
     # Rows are exchanged without the columns: the pivots have other signs than the eigenvalues.
     negative_pivots: int | None = None
+    factor_nonzeros: int | None = None
 
     def __init__(self) -> None:
         self.clock = Clock()

@@ -236,14 +236,16 @@ class Newton:
         """Correct with the same factors as long as that works; adds to the ``corrections``.
 
         A tangent far too stiff, that of a contact which has opened, makes corrections small too,
-        but not ever smaller: it takes two of them to tell.
+        but not ever smaller: where other points touch than did, it takes two of them to tell.
         """
+        touching = self.assembly.touching
         for count in range(self.settings.reuses):
             energy, residual = self.assembly.residual_near(state)
             if not np.isfinite(energy) or self.assembly.excess > trusted:
                 return _Settled(state, converged=False, refused=count == 0)
             if not self.assembly.is_complete:
                 break
+            is_alike = self.assembly.touching == touching
             solution = self._full(self.solver.solve_again(-residual[self.assembly.free]))
             correction, load, _ = self._with_load(state, solution, conjugate)
             size = self._largest(correction)
@@ -251,7 +253,7 @@ class Newton:
                 break
             state = _loaded(self.assembly.advance(state, correction), load)
             corrections.append(size)
-            if count > 0 and size < _SHARE * self.settings.tolerance:
+            if (is_alike or count > 0) and size < _SHARE * self.settings.tolerance:
                 return _Settled(state, converged=True)
         return _Settled(state, converged=False)
 

@@ -165,6 +165,11 @@ class PlaneContact:
         """How much deeper (mm) than the law's width faces are pressed at the state seen last."""
         return max(-self.law.width - self.smallest_gap, 0.0)
 
+    @property
+    def touching(self) -> int:
+        """How many points are in contact at the state seen last."""
+        return int((self._gaps < self.law.width).sum())
+
 
 def _unit(normal: FloatArray) -> FloatArray:
     direction = np.asarray(normal, dtype=np.float64)

@@ -105,6 +105,28 @@ def push_stress(gradient: FloatArray, stress: FloatArray, result: FloatArray) ->
 
 
 @compiled
+def _largest_eigenvalue(matrix: FloatArray) -> float:
+    """Of a symmetric 3 × 3 matrix, in closed form (Smith, *Commun. ACM* 4 (1961) 168)."""
+    mean = (matrix[0, 0] + matrix[1, 1] + matrix[2, 2]) / 3.0
+    squared = 0.0
+    for i in range(3):
+        for j in range(3):
+            rest = matrix[i, j] - (mean if i == j else 0.0)
+            squared += rest * rest
+    size = np.sqrt(squared / 6.0)
+    if size <= 1e-15 * abs(mean):
+        return float(mean)
+    x, y, z = (
+        (matrix[0, 0] - mean) / size,
+        (matrix[1, 1] - mean) / size,
+        (matrix[2, 2] - mean) / size,
+    )
+    xy, yz, zx = matrix[0, 1] / size, matrix[1, 2] / size, matrix[0, 2] / size
+    half = 0.5 * (x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx))
+    return float(mean + 2.0 * size * np.cos(np.arccos(min(max(half, -1.0), 1.0)) / 3.0))
+
+
+@compiled
 def largest_stretches(
     unknowns: FloatArray,
     nodes: IntArray,
@@ -123,7 +145,7 @@ def largest_stretches(
             deformation_gradient(unknowns, nodes[e], gradients[e, q], gradient)
             result[e, q] = 0.0
             if np.sum(gradient * gradient) >= threshold * threshold:
-                result[e, q] = np.sqrt(np.linalg.eigvalsh(gradient @ gradient.T)[2])
+                result[e, q] = np.sqrt(_largest_eigenvalue(gradient @ gradient.T))
 
 
 @compiled

@@ -128,6 +128,11 @@ class TouchingTerm(EnergyTerm, Protocol):
         """How much deeper (mm) than can be trusted the touching is at the state linearised last."""
         ...
 
+    @property
+    def touching(self) -> int:
+        """How many points touch at the state linearised last."""
+        ...
+
 
 def node_dofs(nodes: IntArray) -> IntArray:
     """Numbers (elements, 3·nodes) of the displacements of nodes (elements, nodes), x y z apiece."""

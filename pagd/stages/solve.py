@@ -179,6 +179,7 @@ _HELD_FIGURES = (
     "blocked_force_N",
     "pressure_kPa",
     "newton_iterations",
+    "corrections",
     "steps",
     "rejected_steps",
     "largest_pressure_kPa",
@@ -187,6 +188,7 @@ _HELD_FIGURES = (
     "smallest_gap_mm",
     "deepest_penetration_mm",
     "penetration_share",
+    "profile_s",
 )
 
 

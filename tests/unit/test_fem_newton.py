@@ -82,6 +82,10 @@ class Stop(Spring):
     def excess(self) -> float:
         return max(self.seen[-1] - 1.1, 0.0) if self.seen else 0.0
 
+    @property
+    def touching(self) -> int:
+        return int(bool(self.seen) and self.seen[-1] > 1)
+
 
 def newton(spring: Spring, **settings: float | int) -> Newton:
     assembly = Assembly([spring], 1, np.array([False]))
@@ -97,7 +101,7 @@ def test_a_linear_spring_takes_one_factorisation() -> None:
     assert result.state is not None
     assert result.state.unknowns[0] == pytest.approx(0.5, rel=1e-14)
     assert result.iterations == 1
-    assert result.corrections == pytest.approx((0.5, 0.0, 0.0))
+    assert result.corrections == pytest.approx((0.5, 0.0))
     again = newton(Spring(), reuses=0).solve(at(0.5))
     assert (again.iterations, again.corrections) == (2, pytest.approx((0.5, 0.0)))
 
@@ -118,8 +122,8 @@ def test_factors_are_used_again_while_corrections_shrink_with_them() -> None:
     result = newton(Spring(stiffening=1.0), tolerance=1e-3).solve(at(2.0, 0.99))
     assert result.state is not None
     assert result.iterations == 1
-    assert len(result.corrections) >= 3
-    assert abs(result.state.unknowns[0] - 1.0) < 1e-6
+    assert len(result.corrections) >= 2
+    assert abs(result.state.unknowns[0] - 1.0) < 1e-5
     far = newton(Spring(stiffening=1.0), tolerance=1e-3).solve(at(2.0, 0.0))
     assert far.state is not None
     assert far.iterations > 1
@@ -184,6 +188,45 @@ def test_a_guess_that_goes_too_far_is_shortened(spring: Spring) -> None:
     assert (result.state.load, result.state.unknowns[0]) == pytest.approx((0.95, 0.95))
 
 
+def test_a_first_correction_that_is_too_large_ends_the_try() -> None:
+    refused = newton(Spring()).solve(at(0.5), largest_first=0.4)
+    assert (refused.state, refused.iterations) == (None, 1)
+    assert newton(Spring()).solve(at(0.5), largest_first=0.6).state is not None
+
+
+def test_guesses_through_few_states_are_not_expected_to_be_good() -> None:
+    fake = FakeNewton()
+    follow(fake, [1.0], first=0.1, wanted_correction=0.5, trust=4.0)
+    assert fake.trusts[:2] == [math.inf, math.inf]
+    assert set(fake.trusts[2:]) == {2.0}
+
+
+class Turning(Spring):
+    """A spring whose iterated stress spoils the iteration: with it the residual never shrinks."""
+
+    iterates_stresses = True
+
+    def linearize(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
+    ) -> float:
+        energy = Spring.linearize(self, unknowns, internal, load, system)
+        if self.iterates_stresses:
+            system.tangent[0] = -2.0
+        return energy
+
+
+def test_where_iterated_stresses_fail_those_of_the_displacements_are_tried() -> None:
+    spring = Turning()
+    method = newton(spring)
+    result = method.solve(at(0.5))
+    assert result.state is not None
+    assert result.state.unknowns[0] == pytest.approx(0.5)
+    assert result.iterations > 1
+    # The next solve does without them at once, the one after that tries them again.
+    assert method.solve(at(0.6)).iterations == 1
+    assert method.solve(at(0.7)).iterations > 1
+
+
 def test_an_inadmissible_guess_is_refused() -> None:
     result = newton(Spring(limit=1.0)).solve(at(0.5, 1.5))
     assert (result.state, result.iterations) == (None, 0)
@@ -231,10 +274,14 @@ class FakeNewton:
     largest: float = math.inf
     first_correction: float = 0.1
     tries: list[tuple[float, float]] = field(default_factory=list)
+    trusts: list[float] = field(default_factory=list)
     reached: float = 0.0
     assembly: Assembly = field(default_factory=lambda: Assembly([Spring()], 1, np.array([False])))
 
-    def solve(self, guess: State, before: State | None = None) -> NewtonResult:
+    def solve(
+        self, guess: State, before: State | None = None, largest_first: float = math.inf
+    ) -> NewtonResult:
+        self.trusts.append(largest_first)
         self.tries.append((guess.load, float(guess.unknowns[0])))
         corrections = (self.first_correction, 0.0)
         if guess.load - self.reached > self.largest * (1 + 1e-12):
