@@ -10,9 +10,10 @@ import numpy as np
 from solving import FloatArray
 
 from pagd.catalogue import read_designs
-from pagd.design import Design, GeometryRules
+from pagd.design import Channel, Design, GeometryRules
 from pagd.geometry import render
 from pagd.materials import Elastomer, Sheet, elastomer, find_material, sheet
+from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.gmsh_mesher import GmshMesher
 from pagd.mesh.interface import Mesher
 from pagd.mesh.surfaces import SurfacePair
@@ -57,6 +58,12 @@ def mesh_of_design(
             repair(raw, repaired)
             parts.append(repaired)
         return (mesher or GmshMesher())(SurfacePair.from_stl(*parts, half), size)
+
+
+def block_mesh(name: str, size: float) -> Mesh:
+    """The same of blocks up to a size (mm); of the half y ≥ 0 where the design is symmetric."""
+    drawn = design(name)
+    return chamber_row(drawn, Channel(), size, half=drawn.is_straight)
 
 
 def mirrored(mesh: Mesh) -> Mesh:

@@ -177,7 +177,9 @@ def moved_walls() -> list[Figure]:
 def walls_under_pressure() -> list[Figure]:
     """The same spheres and cylinders under follower pressure: motion of the inner wall.
 
-    λa − 1 by the volume of the cavity, at pressures well below a limit point.
+    λa − 1 by the volume of the cavity, at pressures well below a limit point. Not on hexahedra:
+    pressure acts on faces of six nodes, which those of wedges in a sphere are, but two of which on
+    a face of a hexahedron lack one of its functions.
     """
     figures = [f for pair in PAIRS for f in follower(*pair)]
     spheres = [pair for pair in PAIRS if pair[0] is Sphere]

@@ -20,6 +20,7 @@ from cases_contact_rows import (
     slanted_row_by_ftetwild,
     straight_row_by_ftetwild,
 )
+from cases_hexahedra import bending_hexahedra, twisting_hexahedra
 from cases_inflation import moved_walls, walls_under_pressure
 from cases_material import balloon, homogeneous_states
 from cases_meshes import bending_meshes, mixed_meshes, twisting_meshes
@@ -74,6 +75,8 @@ CASES: tuple[Case, ...] = (
     Case(rows=bending_meshes, group=Group.meshes, costly=True),
     Case(rows=twisting_meshes, group=Group.meshes, costly=True),
     Case(rows=mixed_meshes, group=Group.meshes, costly=True),
+    Case(rows=bending_hexahedra, group=Group.meshes, costly=True),
+    Case(rows=twisting_hexahedra, group=Group.meshes, costly=True),
 )
 
 
