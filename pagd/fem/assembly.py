@@ -163,6 +163,12 @@ class Assembly:
         return max((term.excess for term in self._touching), default=0.0)
 
     @property
+    def excess_near(self) -> float:
+        """The same at the state that was looked around at last; of the terms that search."""
+        known = [term for term in self._touching if isinstance(term, SearchingTerm)]
+        return max((term.excess for term in known), default=0.0)
+
+    @property
     def touching(self) -> tuple[int, ...]:
         """How many points touch at the state linearised last, by term."""
         return tuple(term.touching for term in self._touching)

@@ -262,6 +262,10 @@ class Newton:
         state = guess
         for _ in range(self.settings.shortenings):
             self.assembly.look_around(state)
+            if before is not None and self.assembly.excess_near > 0:
+                # To know that, no tangent is needed.
+                state = _half_way(before, state)
+                continue
             linearised = self.assembly.linearize(state)
             if before is None or (np.isfinite(linearised[0]) and self.assembly.excess == 0):
                 return state, linearised
@@ -315,25 +319,43 @@ class Newton:
         self, settled: _Settled, trusted: float, state: State, correction: FloatArray, load: float
     ) -> tuple[State, Linearised] | None:
         """The corrected state, linearised; part of the correction where all of it goes too far."""
-        trial, fraction = settled.state, 0.5 if settled.refused else 1.0
-        while fraction >= self.settings.smallest_fraction:
-            if fraction < 1.0:
-                # advance() starts from the state linearised last: go back to it.
-                self.assembly.linearize(state)
-                trial = self.assembly.advance(state, fraction * correction)
-                trial = _loaded(trial, fraction * load)
+        trial, fraction = settled.state, 1.0
+        if not settled.refused:
             linearised = self.assembly.linearize(trial)
-            last = fraction < 2 * self.settings.smallest_fraction
-            if np.isfinite(linearised[0]) and (last or self.assembly.excess <= trusted):
+            if np.isfinite(linearised[0]) and self.assembly.excess <= trusted:
                 return trial, linearised
+        # advance() starts from the state linearised last: go back to it. What it gives is linear
+        # in the correction.
+        self.assembly.linearize(state)
+        none = self.assembly.advance(state, 0.0 * correction)
+        whole = _loaded(self.assembly.advance(state, correction), load)
+        while fraction / 2 >= self.settings.smallest_fraction:
             fraction /= 2
+            trial = _between(none, whole, fraction)
+            last = fraction < 2 * self.settings.smallest_fraction
+            energy, _ = self.assembly.residual_near(trial)
+            if not np.isfinite(energy) or (self.assembly.excess > trusted and not last):
+                continue
+            linearised = self.assembly.linearize(trial)
+            if np.isfinite(linearised[0]):
+                return trial, linearised
         return None
+
+
+def _between(first: State, second: State, share: float) -> State:
+    """The state that is a share of the way from one to another."""
+
+    def mixed(a: FloatArray, b: FloatArray) -> FloatArray:
+        return a + share * (b - a)
+
+    internal = tuple(map(mixed, first.internal, second.internal))
+    load = first.load + share * (second.load - first.load)
+    return State(load, mixed(first.unknowns, second.unknowns), internal)
 
 
 def _half_way(before: State, guess: State) -> State:
     """Half-way back from a guess, at its load."""
-    internal = tuple((a + b) / 2 for a, b in zip(before.internal, guess.internal, strict=True))
-    return State(guess.load, (before.unknowns + guess.unknowns) / 2, internal)
+    return replace(_between(before, guess, 0.5), load=guess.load)
 
 
 def _loaded(state: State, more: float) -> State:
