@@ -51,8 +51,8 @@ def twisting_hexahedra() -> list[Figure]:
     Its tip is 6 % short on blocks of 6 mm and 3.5 % on 3 mm; blocks of 2 mm are within 1 % of the
     limits. At 10 kPa blocks of 6 mm are as far short of the limit of tetrahedra (the case of
     twisting meshes), so that both elements have one limit, to about 1 %. Two blocks across the
-    walls matter: with one, these meshes are too soft, by 8 % on 6 mm, and become no better with
-    smaller blocks as long as the wall has one.
+    walls matter: with one, a mesh is too soft, and becomes no better with smaller blocks as long as
+    the walls have one.
     """
     return rows("twisting")
 
