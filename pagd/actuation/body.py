@@ -16,7 +16,7 @@ from pagd.fem.membrane import Membrane
 from pagd.fem.solid import ElementPressureSolid, TaylorHoodSolid
 from pagd.fem.term import EnergyTerm
 from pagd.materials import Elastomer, Sheet
-from pagd.mesh.blocks import hexahedra, wedges
+from pagd.mesh.blocks import block_faces, hexahedra, wedges
 from pagd.mesh.types import Mesh
 
 FloatArray = NDArray[np.float64]
@@ -84,7 +84,7 @@ class Body:
         self.solids = _solids(mesh, material, self.element)
         self.size = 3 * self.nodes
         self.size += sum(s.pressures for s in self.solids if isinstance(s, TaylorHoodSolid))
-        self.pressure = FollowerPressure(mesh.points, _cavity(mesh))
+        self.pressure = _pressure(mesh, self.element)
         self.gravity = _gravity(mesh, material, wanted.gravity_m_s2)
         contact = _contact(mesh, law) if wanted.contact else None
         self.initial_gap = contact.gap_at_rest() if contact else np.inf
@@ -153,9 +153,13 @@ def _solids(
     )
 
 
-def _cavity(mesh: Mesh) -> IntArray:
-    mesh.nodes_of("cavity")  # says which surfaces there are where this is missing
-    return mesh.surfaces["cavity"]
+def _pressure(mesh: Mesh, element: str) -> FollowerPressure:
+    """Pressure on the faces that the elements have in the cavity."""
+    if element != "hexahedron":
+        mesh.nodes_of("cavity")  # says which surfaces there are where this is missing
+        return FollowerPressure(mesh.points, mesh.surfaces["cavity"])
+    quadrilaterals, triangles = block_faces(mesh, "cavity")
+    return FollowerPressure(mesh.points, triangles, quadrilaterals=quadrilaterals)
 
 
 def _paper_terms(mesh: Mesh, paper: Sheet) -> list[EnergyTerm]:

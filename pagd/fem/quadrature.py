@@ -1,10 +1,10 @@
 """Quadrature rules on the reference cells.
 
 Points are given in barycentric coordinates, those of the wedge with the height in [0, 1]
-behind; those of the hexahedron in [0, 1]³. Weights add up to one: they are
-shares of the element's volume or area. Sources: Keast, *Comput. Methods Appl.
-Mech. Eng.* 55 (1986) 339, rule of degree 2; Dunavant, *Int. J. Numer. Methods
-Eng.* 21 (1985) 1129, rules of degree 2 and 4.
+behind; those of the hexahedron in [0, 1]³, of the quadrilateral in [0, 1]². Weights add up
+to one: they are shares of the element's volume or area. Sources: Keast, *Comput. Methods
+Appl. Mech. Eng.* 55 (1986) 339, rule of degree 2; Dunavant, *Int. J. Numer. Methods Eng.*
+21 (1985) 1129, rules of degree 2 and 4.
 """
 
 from __future__ import annotations
@@ -68,6 +68,13 @@ def _line() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Gauss's three points on [0, 1], degree 5, and their weights."""
     places, weights = np.polynomial.legendre.leggauss(3)
     return (places + 1) / 2, weights / 2
+
+
+def quadrilateral() -> Quadrature:
+    """Nine points on the unit square, degree 5 along each axis."""
+    places, weights = _line()
+    points = np.stack(np.meshgrid(places, places, indexing="ij"), axis=-1)
+    return Quadrature(points.reshape(-1, 2), np.outer(weights, weights).ravel())
 
 
 def hexahedron() -> Quadrature:

@@ -7,7 +7,8 @@ Triangle: corners 0–2, then the edges (0,1) (1,2) (2,0).
 The functions are written in barycentric coordinates l: corner a has
 l_a (2 l_a − 1), the edge between a and b has 4 l_a l_b.
 Hexahedron: node 9 i + 3 j + k at (i/2, j/2, k/2) of the unit cube, products of the quadratic
-functions of a line. Wedge: node 6 k + a at node a of the triangle and the height k/2.
+functions of a line; the quadrilateral likewise. Wedge: node 6 k + a at node a of the triangle
+and the height k/2.
 """
 
 from __future__ import annotations
@@ -101,6 +102,21 @@ def hexahedron_derivatives(points: FloatArray) -> FloatArray:
         x, y, z = (_line_derivatives(points[:, k]) if k == axis else values[k] for k in range(3))
         result[:, :, axis] = np.einsum("qi,qj,qk->qijk", x, y, z).reshape(len(points), 27)
     return result
+
+
+def quadrilateral_values(points: FloatArray) -> FloatArray:
+    """Values (points, 9) of the functions at points (points, 2) of the unit square."""
+    x, y = (_line_values(points[:, k]) for k in range(2))
+    return np.asarray(np.einsum("qi,qj->qij", x, y).reshape(len(points), 9))
+
+
+def quadrilateral_derivatives(points: FloatArray) -> FloatArray:
+    """Derivatives (points, 9, 2) along the two reference axes."""
+    x, y = (_line_values(points[:, k]) for k in range(2))
+    slope_x, slope_y = (_line_derivatives(points[:, k]) for k in range(2))
+    pairs = ((slope_x, y), (x, slope_y))
+    both = [np.einsum("qi,qj->qij", *pair).reshape(len(points), 9) for pair in pairs]
+    return np.stack(both, axis=-1)
 
 
 def wedge_values(points: FloatArray) -> FloatArray:

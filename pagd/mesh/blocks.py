@@ -14,7 +14,7 @@ import numpy as np
 from pagd.errors import InputError
 from pagd.mesh.types import TET_EDGES, FloatArray, IntArray, Mesh
 
-__all__ = ["HEXAHEDRON_TETS", "WEDGE_TETS", "check_blocks", "hexahedra", "wedges"]
+__all__ = ["HEXAHEDRON_TETS", "WEDGE_TETS", "block_faces", "check_blocks", "hexahedra", "wedges"]
 
 
 def _ten_nodes(corners: FloatArray, places: FloatArray) -> IntArray:
@@ -57,6 +57,29 @@ HEXAHEDRON_TETS: IntArray = _hexahedron_tets()
 WEDGE_TETS: tuple[IntArray, IntArray] = (_wedge_tets((0, 1, 2)), _wedge_tets((0, 2, 1)))
 
 
+# Outward faces of the blocks, nodes by rows.
+_LATTICE = np.arange(27).reshape(3, 3, 3)
+_HEXAHEDRON_FACES: IntArray = np.array(
+    [
+        face.ravel()
+        for face in (
+            _LATTICE[0].T,
+            _LATTICE[2],
+            _LATTICE[:, 0],
+            _LATTICE[:, 2].T,
+            _LATTICE[:, :, 0].T,
+            _LATTICE[:, :, 2],
+        )
+    ]
+)
+_WEDGE_FACES: IntArray = np.array(
+    [
+        [node + 6 * layer for node in edge for layer in range(3)]
+        for edge in ((0, 3, 1), (1, 4, 2), (2, 5, 0))
+    ]
+)
+
+
 def hexahedra(mesh: Mesh) -> IntArray:
     """Nodes (k, 27) of the hexahedra of a mesh, its first 6 k tetrahedra."""
     tets = mesh.tets[: 6 * mesh.hexahedra].reshape(-1, 6, 10)
@@ -69,6 +92,26 @@ def wedges(mesh: Mesh) -> IntArray:
     first, second = (_gathered(tets, table, 18) for table in WEDGE_TETS)
     fits = (first[:, WEDGE_TETS[0]] == tets).all(axis=(1, 2))
     return np.where(fits[:, None], first, second)
+
+
+def block_faces(mesh: Mesh, name: str) -> tuple[IntArray, IntArray]:
+    """Faces of blocks on surface ``name``: with nine nodes (k, 9) and with six (m, 6).
+
+    Where two of the surface's triangles are a face of a block, its nine nodes; the triangles that
+    are left. Nine nodes come row by row, node 3 i + j at (i/2, j/2) of the face; all point to the
+    side that the surface does. InputError if there is no such surface.
+    """
+    mesh.nodes_of(name)  # says which surfaces there are where it is missing
+    triangles = mesh.surfaces[name]
+    on = np.zeros(len(mesh.points), dtype=np.bool_)
+    on[triangles[:, 3:]] = True
+    cells = ((hexahedra(mesh), _HEXAHEDRON_FACES), (wedges(mesh), _WEDGE_FACES))
+    faces = np.vstack([nodes[:, table].reshape(-1, 9) for nodes, table in cells])
+    # The node in the middle of a block's face is on no other face.
+    faces = faces[on[faces[:, 4]]]
+    middles = np.zeros(len(mesh.points), dtype=np.bool_)
+    middles[faces[:, 4]] = True
+    return faces, triangles[~middles[triangles[:, 3:]].any(axis=1)]
 
 
 def check_blocks(mesh: Mesh) -> None:

@@ -33,10 +33,10 @@ _SAME = 1e-6
 # A layer is divided so that no part exceeds the size by more than this share of it.
 _SLACK = 0.25
 
-# The walls across the row, which swell as clamped plates, are at least so many blocks thick: with
-# one the tip of the twisting example of Table 2 goes 12 % too far, with two less than 1 %
-# (tests/verification).
-_WALL_BLOCKS = 2
+# Walls, cavities and gaps are at least so many blocks long: the row bends in the floors of its gaps
+# and cavities, and its walls swell as clamped plates. With one block each the tip of the twisting
+# example of Table 2 goes 6 % too far at 6 mm and more at 3 mm; with two it converges from one side.
+_LEAST_BLOCKS = {"wall": 2, "cavity": 2, "gap": 2, "end": 1}
 
 _CORNERS = np.array(list(np.ndindex(2, 2, 2)))
 
@@ -76,7 +76,7 @@ def chamber_row(design: Design, channel: Channel, size: float, *, half: bool = F
     channel
         The air channel.
     size
-        Longest edge of a block. Walls across the row are at least two blocks thick, all else one.
+        Longest edge of a block. Along the row walls, cavities and gaps are two blocks at least.
     half
         Mesh the half y ≥ 0 of a straight design.
 
@@ -136,7 +136,7 @@ def _planes(design: Design, size: float) -> list[_Plane]:
             # No slanted chamber: the row ends where its chambers do.
             planes[-1] = after
             continue
-        parts = max(_parts(length, size), _WALL_BLOCKS if before.behind == "wall" else 1)
+        parts = max(_parts(length, size), _LEAST_BLOCKS[before.behind])
         shares = np.arange(1, parts + 1) / parts
         planes += [
             _Plane(

@@ -7,6 +7,7 @@ import pytest
 from fem_checks import check_derivatives, linearized, moved, random_displacement
 
 from pagd.fem.follower_pressure import EQUAL_WEIGHTS, FollowerPressure
+from pagd.mesh.blocks import block_faces
 from pagd.mesh.primitives import cylinder_quarter, hollow_block, sphere_octant
 from pagd.mesh.types import Mesh
 
@@ -31,6 +32,33 @@ def test_derivatives(weights: tuple[float, float, float]) -> None:
 def test_derivatives_of_an_open_curved_surface() -> None:
     mesh = sphere_octant(2.0, 3.0, (1, 2))
     check_derivatives(pressure(mesh), random_displacement(mesh.points, 0.5), LOAD)
+
+
+def bricks() -> tuple[Mesh, FollowerPressure]:
+    """The same block of hexahedra, and the pressure on their faces of nine nodes."""
+    mesh = hollow_block((3.0, 6.0, 4.5), (3, 3, 3), ((1, 2), (1, 2), (1, 2)), 1, blocks="hexahedra")
+    four, three = block_faces(mesh, "cavity")
+    return mesh, FollowerPressure(mesh.points, three, quadrilaterals=four)
+
+
+def test_derivatives_on_nine_nodes() -> None:
+    mesh, term = bricks()
+    check_derivatives(term, random_displacement(mesh.points, 0.5), LOAD)
+
+
+def test_a_face_of_nine_nodes_bulges_by_its_middle() -> None:
+    """4/9 of its area and height, as ∫∫ 16 x (1 − x) y (1 − y); by two triangles a third."""
+    mesh, term = bricks()
+    four, _ = block_faces(mesh, "cavity")
+    middle = four[0, 4]
+    corners = mesh.points[four[0, [0, 2, 6]]]
+    normal = np.cross(corners[2] - corners[0], corners[1] - corners[0])
+    state = np.zeros_like(mesh.points)
+    state[middle] = -0.1 * normal / np.linalg.norm(normal)
+    growth = term.volume(state.ravel()) - 3.0
+    assert growth == pytest.approx(4 / 9 * 0.1 * np.linalg.norm(normal), rel=1e-9)
+    by_triangles = pressure(mesh).volume(state.ravel()) - 3.0
+    assert by_triangles == pytest.approx(1 / 3 * 0.1 * np.linalg.norm(normal), rel=1e-9)
 
 
 def test_volume_of_the_void() -> None:

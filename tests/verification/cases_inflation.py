@@ -20,6 +20,7 @@ from solving import BLOCKS, FloatArray, elastomer, held, label, solid_of, solve
 
 from pagd.fem.follower_pressure import FollowerPressure
 from pagd.fem.term import ElementSystem
+from pagd.mesh.blocks import block_faces
 from pagd.mesh.primitives import cylinder_quarter, sphere_octant
 from pagd.mesh.types import Mesh
 
@@ -98,7 +99,7 @@ def pressures_at_stretches(
         [s - 1 for s in STRETCHES],
         lambda load: load * radial,
     )
-    pressure = FollowerPressure(mesh.points, mesh.surfaces["cavity"], body.axis_weights)
+    pressure = _pressure(mesh, element, body.axis_weights)
     result = []
     for state in solved:
         system = ElementSystem.of(pressure.dofs)
@@ -108,11 +109,21 @@ def pressures_at_stretches(
     return result
 
 
+def _pressure(
+    mesh: Mesh, element: str, axis_weights: tuple[float, float, float]
+) -> FollowerPressure:
+    """Pressure on the faces of the element: triangles, and quadrilaterals where it is a block."""
+    if element not in BLOCKS:
+        return FollowerPressure(mesh.points, mesh.surfaces["cavity"], axis_weights)
+    quadrilaterals, triangles = block_faces(mesh, "cavity")
+    return FollowerPressure(mesh.points, triangles, axis_weights, quadrilaterals)
+
+
 def stretches_under_pressure(body: Body, material: str, element: str) -> list[float]:
     """Stretch λa under the closed form's pressure for :data:`UNDER_PRESSURE`: by cavity volume."""
     mesh = body.mesh(element)
     coefficients = MATERIALS[material]
-    pressure = FollowerPressure(mesh.points, mesh.surfaces["cavity"], body.axis_weights)
+    pressure = _pressure(mesh, element, body.axis_weights)
     loads = [
         body.exact_pressure(coefficients, INNER, OUTER, s)
         for s in UNDER_PRESSURE[body.name, material]
@@ -177,10 +188,8 @@ def moved_walls() -> list[Figure]:
 def walls_under_pressure() -> list[Figure]:
     """The same spheres and cylinders under follower pressure: motion of the inner wall.
 
-    λa − 1 by the volume of the cavity, at pressures well below a limit point. Not on hexahedra:
-    pressure acts on faces of six nodes, which those of wedges in a sphere are, but two of which on
-    a face of a hexahedron lack one of its functions.
+    λa − 1 by the volume of the cavity, at pressures well below a limit point. Pressure acts on
+    faces of nine nodes on hexahedra, of six on tetrahedra and on wedges in the sphere.
     """
     figures = [f for pair in PAIRS for f in follower(*pair)]
-    spheres = [pair for pair in PAIRS if pair[0] is Sphere]
-    return figures + [f for pair in spheres for f in follower(*pair, pair[0].block)]
+    return figures + [f for pair in PAIRS for f in follower(*pair, pair[0].block)]
