@@ -112,13 +112,14 @@ def _add_mesh(commands: Any) -> None:
 
 def _add_mesh_options(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("mesh (instead of the configuration's values)")
-    override(group, "mesh", "size_mm", float, "edge length of the tetrahedra")
+    override(group, "mesh", "block_mm", float, "longest edge of the hexahedra, for structured")
+    override(group, "mesh", "size_mm", float, "edge length of the tetrahedra, for the others")
     group.add_argument(
         "--meshers",
         dest="mesh.meshers",
         nargs="+",
         metavar="NAME",
-        help="gmsh, ftetwild or module:class, in the order they are tried",
+        help="structured, gmsh, ftetwild or module:class, in the order they are tried",
     )
     override(group, "mesh", "time_limit_s", float, "a mesher is ended after this time")
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pagd.errors import InputError, Status
 from pagd.fem.contact import ContactLaw
+from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import (
@@ -136,7 +137,7 @@ def _cost(upstream: list[Record]) -> dict[str, float]:
 
 def _sizes(upstream: list[Record]) -> dict[str, Any]:
     solved = upstream[-1]
-    sizes = [r.configuration["mesh"]["size_mm"] for r in upstream if r.stage == "mesh"]
+    sizes = [_size_of(record) for record in upstream if record.stage == "mesh"]
     return {
         "size_mm": sizes[0] if sizes else None,
         "material": solved.configuration["material"]["name"],
@@ -254,3 +255,9 @@ def _refuse_still(outcome: Outcome, last: Mapping[str, Any], thresholds: Thresho
             f"At {last['pressure_kPa']:g} kPa it bends by {round(bending, 1) + 0.0}° and twists "
             f"by {round(twist, 1) + 0.0}°, both less than {thresholds.still_deg:g}°.",
         )
+
+
+def _size_of(mesh: Record) -> float:
+    """Length in mm that the elements were wanted to have."""
+    key = "block_mm" if mesh.figures.get("mesher") == STRUCTURED else "size_mm"
+    return float(mesh.configuration["mesh"][key])

@@ -36,8 +36,8 @@ def what_was_run(
                     ("how they ended", _statuses(rows)),
                     ("material", _values(settings, "material", "name")),
                     ("pressure up to", _values(settings, "solve", "maximum_pressure_kPa", "kPa")),
-                    ("mesh size", _values(settings, "mesh", "size_mm", "mm")),
-                    ("element", _values(settings, "solve", "element")),
+                    ("mesh size", _told((row.get("size_mm") for row in rows), "mm")),
+                    ("element", _told(record.figures.get("element") for record in records)),
                     ("contact between chambers", _values(settings, "solve", "contact")),
                     ("pagd", _versions(records, "pagd")),
                 ]
@@ -46,6 +46,12 @@ def what_was_run(
             folded("Versions", _all_versions([*records, *filter(None, others)])),
         ]
     )
+
+
+def _told(values: Iterable[Any], unit: str = "") -> str:
+    """The values that are known, once each."""
+    found = {f"{_word(value)} {unit}".strip(): True for value in values if value is not None}
+    return escaped(", ".join(found))
 
 
 def _statuses(rows: Sequence[Row]) -> str:

@@ -1,0 +1,144 @@
+"""Where the time of a design goes, part by part, from the records that its stages leave.
+
+    python benchmarks/where_time_goes.py [--designs bending twisting mixed]
+        [--page docs/performance.md]
+
+Each design of Table 2 goes through all stages but the pictures, by commands of their own and one
+thread, twice: first with nothing compiled, then with the compiled kernels in their cache, which is
+the table; the difference is what the first design on a machine costs more. Give nothing else to do
+to the machine meanwhile.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from performance.origin import origin_lines
+from performance.page import must_have_section, publish, table, wrapped
+
+from pagd.catalogue import NamedDesign, read_designs
+from pagd.errors import InputError
+from pagd.record import Record, read_record
+
+_ROOT = Path(__file__).parents[1]
+_SECTION = "profile"
+_STAGES = ("geometry", "repair", "mesh", "solve", "metrics")
+#: Parts of an analysis, as the records name them, and what they are.
+_PARTS = {
+    "pattern": "pattern of the matrix",
+    "assembly": "tangents and residuals",
+    "residual": "residuals alone",
+    "update": "what is condensed",
+    "contact search": "contact search",
+    "analysis": "symbolic factorisation",
+    "factorisation": "factorisation",
+    "solution": "solutions",
+    "states": "energies, stretches, records of steps",
+}
+
+
+class _Run(NamedTuple):
+    """Records of the stages, and their processes' wall seconds."""
+
+    records: dict[str, Record]
+    wall: dict[str, float]
+
+
+def main() -> None:
+    """Run the designs, print the table or write it to the page."""
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--designs", nargs="+", default=["bending", "twisting", "mixed"])
+    parser.add_argument("--page", type=Path)
+    options = parser.parse_args()
+    try:
+        must_have_section(options.page, _SECTION)
+        known = read_designs({"table2": str(_ROOT / "config" / "table2.csv")})
+        unknown = [name for name in options.designs if name not in known]
+        if unknown:
+            raise InputError(f"designs = {unknown[0]}: must be of {', '.join(known)}.")
+        publish(options.page, _SECTION, _section([known[name] for name in options.designs]))
+    except InputError as error:
+        parser.error(str(error))
+
+
+def _section(designs: list[NamedDesign]) -> str:
+    with tempfile.TemporaryDirectory(prefix="pagd-profile-") as folder:
+        cache = Path(folder, "cache")
+        cold = _all_stages(designs[0], Path(folder, "cold"), cache)
+        runs = {d.name: _all_stages(d, Path(folder, d.name), cache) for d in designs}
+    names = " ".join(runs)
+    first = sum(cold.wall.values()) - sum(runs[designs[0].name].wall.values())
+    text = wrapped(
+        f"Processor seconds of the designs of Table 2, free actuation and blocked force, one "
+        f"thread. Before kernels are compiled the first design takes {first:.0f} s more (wall "
+        "time), once on a machine."
+    )
+    origin = origin_lines(f"python benchmarks/where_time_goes.py --designs {names}")
+    return f"{origin}\n\n{text}\n\n{_table(runs)}"
+
+
+def _all_stages(design: NamedDesign, out: Path, cache: Path) -> _Run:
+    """Run every stage as a process of its own; ``cache`` is for the compiled kernels."""
+    env = os.environ | {"NUMBA_CACHE_DIR": str(cache), "OMP_NUM_THREADS": "1"}
+    env |= {"MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+    at = {stage: str(out / stage) for stage in _STAGES}
+    words = {
+        "geometry": ["--design", design.as_json()],
+        "repair": ["--geometry", at["geometry"]],
+        "mesh": ["--geometry", at["geometry"], "--repair", at["repair"]],
+        "solve": ["--mesh", at["mesh"], "--threads", "1"],
+        "metrics": [word for s in _STAGES[:-1] for word in (f"--{s}", at[s])],
+    }
+    wall = {}
+    for stage in _STAGES:
+        print(f"{design.name}: {stage}", file=sys.stderr)
+        command = [sys.executable, "-m", "pagd", stage, *words[stage], "--keep-going"]
+        start = time.perf_counter()
+        subprocess.run([*command, "--out", at[stage]], env=env, check=True, capture_output=True)
+        wall[stage] = time.perf_counter() - start
+    return _Run({stage: read_record(out / stage) for stage in _STAGES}, wall)
+
+
+def _table(runs: dict[str, _Run]) -> str:
+    rows = [["unknowns", *(f"{r.records['solve'].figures['unknowns']:,}" for r in runs.values())]]
+    columns = [_column(run) for run in runs.values()]
+    for name in columns[0]:
+        rows.append([name, *(f"{column.get(name, 0.0):.2f}" for column in columns)])
+    return table(["", *runs], rows)
+
+
+def _column(run: _Run) -> dict[str, float]:
+    """Processor seconds by part; what a process spends before its stage by its wall time."""
+    records = run.records
+    timings = {stage: record.timings_s for stage, record in records.items()}
+    starting = sum(run.wall[stage] - timings[stage]["wall"] for stage in _STAGES)
+    solve = timings["solve"]
+    analyses = {
+        "free actuation": (solve["solve_cpu"], records["solve"].figures["profile_s"]),
+        "blocked force": (
+            solve["blocked_force_cpu"],
+            records["solve"].figures["blocked_force"]["profile_s"],
+        ),
+    }
+    column = {"python, imports (wall)": starting}
+    column |= {stage: timings[stage]["cpu"] for stage in ("geometry", "repair", "mesh")}
+    for name, (whole, parts) in analyses.items():
+        column[f"**{name}**"] = whole
+        for part, what in _PARTS.items():
+            column[f"{name}: {what}"] = parts.get(part, 0.0)
+        column[f"{name}: the rest"] = whole - sum(parts.values())
+    column["solve: reading and writing"] = solve["cpu"] - sum(a for a, _ in analyses.values())
+    column["metrics"] = timings["metrics"]["cpu"]
+    column["**all**"] = starting + sum(one["cpu"] for one in timings.values())
+    return column
+
+
+if __name__ == "__main__":
+    main()
