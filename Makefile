@@ -11,7 +11,7 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep test verify lint clean distclean system-packages
+.PHONY: help run dataset sweep test verify peers lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -32,6 +32,12 @@ test: lint ## Check the style, then run all tests.
 verify: .venv/pagd-installed ## Compute every row of the verification: docs/verification.md; half an hour at most.
 	@setup/system.sh verification-packages.txt || echo "Without CalculiX, its cases are left out."
 	python tests/verification --processes $(CORES) --out results/verification --page docs/verification.md
+
+peers: .venv/pagd-installed ## Compare with CalculiX, FElupe and NGSolve: sections of docs/performance.md; hours.
+	@setup/system.sh ../benchmarks/peer-packages.txt
+	python benchmarks/peers.py converged
+	python benchmarks/peers.py calculix --mesher gmsh structured --page docs/performance.md
+	python benchmarks/peers.py iteration --page docs/performance.md
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .
