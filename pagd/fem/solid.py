@@ -175,7 +175,8 @@ class ElementPressureSolid:
         """Values (E, Q, m): 1, and x, y, z from the centre where the cell has more than 10 nodes.
 
         Coordinates of the body, not of the reference cell: only so a linear pressure is exact in
-        distorted cells too (Boffi and Gastaldi, *Computing* 69 (2002) 91).
+        distorted cells too (Boffi and Gastaldi, *Int. J. Numer. Meth. Fluids* 39
+        (2002) 1001).
         """
         one = np.ones((*self.weights.shape, 1))
         cell = cell_of(self.nodes)
