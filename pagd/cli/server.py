@@ -214,7 +214,8 @@ def _take_place(request: _Request) -> None:
         os.close(stream)
     os.chdir(request.folder)
     os.environ.clear()
-    os.environ.update(request.environment)
+    # Numba reads the number of its threads again whenever it compiles, and must find the same.
+    os.environ.update(request.environment | dict.fromkeys(_THREADS, "1"))
 
 
 def _run(arguments: list[str]) -> int:

@@ -212,3 +212,13 @@ def test_all_end_with_the_process_that_started_the_server(tmp_path: Path, slow: 
     assert "pagd: interrupted" in told
     until(lambda: is_gone(worker) and is_gone(program))
     until(lambda: not served.socket.parent.exists())
+
+
+def test_a_worker_keeps_the_threads_of_the_server(tmp_path: Path) -> None:
+    """Whatever the command's environment says: Numba looks again at each compilation."""
+    process = os.fork()
+    if process == 0:
+        server._take_place(server._Request([], str(tmp_path), {"NUMBA_NUM_THREADS": "7"}, []))
+        os._exit(0 if os.environ == dict.fromkeys(server._THREADS, "1") else 1)
+    _, status = os.waitpid(process, 0)
+    assert os.waitstatus_to_exitcode(status) == 0
