@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from pagd.cli import server
 from pagd.cli.client import SERVED, SERVER, ask_server
 from pagd.cli.parser import make_parser
 from pagd.record import read_record
