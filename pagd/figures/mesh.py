@@ -12,7 +12,7 @@ from pagd.figures.load import load_mesh
 from pagd.figures.scene import Camera, Image, Sheet, Wire, render
 from pagd.figures.style import BASE, CAVITY, CUT, ELASTOMER, INK, PAPER, new_figure, save
 from pagd.figures.surface import cut_faces, is_half
-from pagd.mesh.quality import mesh_quality, scaled_jacobians
+from pagd.mesh.quality import element_jacobians, mesh_quality
 from pagd.mesh.types import Mesh
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _draw_legend(axes: Axes, mesh: Mesh, faces: dict[str, NDArray[np.int64]]) ->
 
 
 def _draw_quality(axes: Axes, mesh: Mesh) -> None:
-    axes.hist(scaled_jacobians(mesh.points, mesh.tets), bins=40, range=(0.0, 1.0), color=ELASTOMER)
+    axes.hist(element_jacobians(mesh), bins=40, range=(0.0, 1.0), color=ELASTOMER)
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel("scaled Jacobian")
-    axes.set_ylabel("tetrahedra")
+    axes.set_ylabel("elements")

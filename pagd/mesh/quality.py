@@ -9,7 +9,14 @@ import numpy as np
 from pagd.mesh.blocks import hexahedra, wedges
 from pagd.mesh.types import TET_EDGES, FloatArray, IntArray, Mesh, corner_volumes
 
-__all__ = ["MeshQuality", "block_jacobians", "mesh_quality", "node_jacobians", "scaled_jacobians"]
+__all__ = [
+    "MeshQuality",
+    "block_jacobians",
+    "element_jacobians",
+    "mesh_quality",
+    "node_jacobians",
+    "scaled_jacobians",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,8 +49,7 @@ def mesh_quality(mesh: Mesh, exact_volume: float | None = None) -> MeshQuality:
     Volumes are those of the tetrahedra between the corner nodes, which is exact where the
     elements are straight-sided.
     """
-    in_blocks = mesh.hexahedra + mesh.wedges > 0
-    jacobians = block_jacobians(mesh) if in_blocks else scaled_jacobians(mesh.points, mesh.tets)
+    jacobians = element_jacobians(mesh)
     volume = float(corner_volumes(mesh.points, mesh.tets).sum())
     error = None if exact_volume is None else volume / exact_volume - 1.0
     smallest, low, median = np.percentile(jacobians, [0.0, 1.0, 50.0])
@@ -73,6 +79,12 @@ def scaled_jacobians(points: FloatArray, tets: IntArray) -> FloatArray:
     product = lengths.prod(axis=2).max(axis=1)
     jacobians = 6.0 * corner_volumes(points, tets) * np.sqrt(2.0)
     return np.asarray(np.divide(jacobians, product, out=np.zeros_like(product), where=product > 0))
+
+
+def element_jacobians(mesh: Mesh) -> FloatArray:
+    """Scaled Jacobian of each block, or of each tetrahedron where there are no blocks."""
+    in_blocks = mesh.hexahedra + mesh.wedges > 0
+    return block_jacobians(mesh) if in_blocks else scaled_jacobians(mesh.points, mesh.tets)
 
 
 def block_jacobians(mesh: Mesh) -> FloatArray:
