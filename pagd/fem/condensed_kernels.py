@@ -13,221 +13,99 @@ from numba import prange
 from numpy.typing import NDArray
 
 from pagd.fem.compiled import compiled, compiled_parallel
-from pagd.fem.hyperelastic import deviatoric_response
-from pagd.fem.solid_kernels import (
-    CHUNK,
-    SIX,
-    SMALLEST_VOLUME_RATIO,
-    add_volumetric,
-    chunks,
-    inverse,
-    isochoric_left_stretch,
-    push_stress,
+from pagd.fem.condensation_kernels import (
+    fill_condensed,
+    fill_residual,
+    fill_volume_slopes,
+    pack,
+    pressures_at,
+    volume_changes,
+    wanted_pressures,
 )
+from pagd.fem.hyperelastic import responses, stresses
+from pagd.fem.point_kernels import (
+    Points,
+    add_pressure_tangents,
+    add_pressures,
+    deform,
+    integral,
+    points_of,
+    push_stresses,
+)
+from pagd.fem.solid_kernels import CHUNK, chunks
+from pagd.fem.symmetric import SIX
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_Work = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-
 
 @compiled
-def _workspace() -> _Work:
-    """F, F⁻¹, b̄, τ and c of one quadrature point."""
-    return (
-        np.empty((3, 3)),
-        np.empty((3, 3)),
-        np.empty((3, 3)),
-        np.empty(6),
-        np.empty((6, 6)),
-    )
-
-
-@compiled
-def _gather(unknowns: FloatArray, nodes: IntArray, displacements: FloatArray) -> None:
-    """Fill the displacements (3, n) of an element."""
-    for a in range(len(nodes)):
+def _push_forward(inverse: FloatArray, gradients: FloatArray, spatial: FloatArray) -> None:
+    """Fill g (Q, 3, n) from F⁻¹ (Q, 3, 3) and the gradients (Q, 3, n)."""
+    for q in range(gradients.shape[0]):
         for i in range(3):
-            displacements[i, a] = unknowns[3 * nodes[a] + i]
-
-
-@compiled
-def _combined(values: FloatArray, pressures: FloatArray) -> float:
-    """The pressure Σ φ_c p_c at a point."""
-    total = 0.0
-    for c in range(len(values)):
-        total += values[c] * pressures[c]
-    return total
-
-
-@compiled
-def _gradient(displacements: FloatArray, gradients: FloatArray, result: FloatArray) -> None:
-    """Fill F (3, 3) from displacements (3, n) and the gradients (3, n) of a point."""
-    for i in range(3):
-        for j in range(3):
-            total = 1.0 if i == j else 0.0
-            for a in range(gradients.shape[1]):
-                total += displacements[i, a] * gradients[j, a]
-            result[i, j] = total
-
-
-@compiled
-def _combine(
-    x: float, y: float, z: float, gradients: FloatArray, result: FloatArray, first: int
-) -> None:
-    """Fill x g_x + y g_y + z g_z of all nodes into ``result``, from ``first`` on."""
-    for a in range(gradients.shape[1]):
-        result[first + a] = x * gradients[0, a] + y * gradients[1, a] + z * gradients[2, a]
+            x, y, z = inverse[q, 0, i], inverse[q, 1, i], inverse[q, 2, i]
+            for a in range(gradients.shape[2]):
+                spatial[q, i, a] = (
+                    x * gradients[q, 0, a] + y * gradients[q, 1, a] + z * gradients[q, 2, a]
+                )
 
 
 @compiled
 def _fill_products(
-    weight: float,
+    weights: FloatArray,
     stress: FloatArray,
     tangent: FloatArray,
     spatial: FloatArray,
     equal: FloatArray,
     unequal: FloatArray,
 ) -> None:
-    """Fill A_ij · g (3, 3n) of a point: ij = xx, yy, zz side by side; xy, yz, zx likewise."""
-    count = spatial.shape[1]
-    for row in range(3):
-        x = weight * stress[SIX[row, 0]]
-        y = weight * stress[SIX[row, 1]]
-        z = weight * stress[SIX[row, 2]]
-        for i in range(3):
-            c = weight * tangent[SIX[i, row]]
-            _combine(
-                c[SIX[i, 0]] + x,
-                c[SIX[i, 1]] + y,
-                c[SIX[i, 2]] + z,
-                spatial,
-                equal[row],
-                i * count,
-            )
-            j = (i + 1) % 3
-            _combine(c[SIX[j, 0]], c[SIX[j, 1]], c[SIX[j, 2]], spatial, unequal[row], i * count)
+    """Fill A_ij · g (Q, 3, 3, n) for ij = xx, yy, zz; the same for xy, yz, zx.
 
-
-@compiled
-def _fill_forces(
-    weight: float,
-    ratio: float,
-    stress: FloatArray,
-    values: FloatArray,
-    forces: FloatArray,
-) -> None:
-    """Fill what the gradients of a point are multiplied by (3, 3 + 3m): w τ, and w J φ I each."""
-    forces[:, :] = 0.0
-    for i in range(3):
-        for j in range(3):
-            forces[i, j] = weight * stress[SIX[i, j]]
-        for c in range(len(values)):
-            forces[i, 3 + 3 * c + i] = weight * ratio * values[c]
-
-
-@compiled
-def _state(
-    displacements: FloatArray,
-    gradients: FloatArray,
-    pressure: float,
-    law: int,
-    parameters: FloatArray,
-    work: _Work,
-    spatial: FloatArray,
-) -> tuple[float, float]:
-    """Energy density and J of a point; fills stress and tangent of ``work``, and g (3, n)."""
-    gradient, inverted, b, stress, tangent = work
-    _gradient(displacements, gradients, gradient)
-    ratio = inverse(gradient, inverted)
-    if not ratio > SMALLEST_VOLUME_RATIO:
-        return np.inf, ratio
-    for i in range(3):
-        _combine(inverted[0, i], inverted[1, i], inverted[2, i], gradients, spatial[i], 0)
-    isochoric_left_stretch(gradient, ratio, b)
-    energy = deviatoric_response(law, parameters, b, stress, tangent)
-    add_volumetric(ratio * pressure, stress, tangent)
-    return energy, ratio
-
-
-@compiled
-def _pack(
-    equal: FloatArray,
-    unequal: FloatArray,
-    slopes: FloatArray,
-    products: FloatArray,
-    packed: FloatArray,
-) -> None:
-    """Fill the packed upper triangle: stiffness of the displacements, and what is condensed.
-
-    equal, unequal (n, 3n): blocks ij = xx, yy, zz and xy, yz, zx. slopes, products (m, 3n): b
-    and K M⁻¹ b.
+    From weights (Q,), stresses (Q, 6), tangents (Q, 6, 6) and g (Q, 3, n).
     """
-    count, size = len(equal), slopes.shape[1]
-    position = 0
-    for a in range(count):
+    points, _, count = spatial.shape
+    for q in range(points):
+        for row in range(3):
+            for i in range(3):
+                c, j = SIX[i, row], (i + 1) % 3
+                x = weights[q] * (tangent[q, c, SIX[i, 0]] + stress[q, SIX[row, 0]])
+                y = weights[q] * (tangent[q, c, SIX[i, 1]] + stress[q, SIX[row, 1]])
+                z = weights[q] * (tangent[q, c, SIX[i, 2]] + stress[q, SIX[row, 2]])
+                for a in range(count):
+                    equal[q, row, i, a] = (
+                        x * spatial[q, 0, a] + y * spatial[q, 1, a] + z * spatial[q, 2, a]
+                    )
+                x = weights[q] * tangent[q, c, SIX[j, 0]]
+                y = weights[q] * tangent[q, c, SIX[j, 1]]
+                z = weights[q] * tangent[q, c, SIX[j, 2]]
+                for a in range(count):
+                    unequal[q, row, i, a] = (
+                        x * spatial[q, 0, a] + y * spatial[q, 1, a] + z * spatial[q, 2, a]
+                    )
+
+
+@compiled
+def _fill_forces(weights: FloatArray, at: Points, forces: FloatArray) -> None:
+    """Fill w F⁻¹ τ (Q, 3, 3), what the gradients are multiplied by."""
+    inverse, stress = at.inverse, at.stress
+    for q in range(len(weights)):
         for i in range(3):
-            row = 3 * a + i
-            start = position - row
-            after, before = (i + 1) % 3, (i + 2) % 3
-            for b in range(a, count):
-                packed[start + 3 * b + i] = equal[a, i * count + b]
-                if b > a or after > i:
-                    packed[start + 3 * b + after] = unequal[a, i * count + b]
-                if b > a or before > i:
-                    packed[start + 3 * b + before] = unequal[b, before * count + a]
-            for c in range(len(slopes)):
-                slope = slopes[c, row]
-                for column in range(row, size):
-                    packed[start + column] += slope * products[c, column]
-            position += size - row
+            for j in range(3):
+                force = inverse[q, i, 0] * stress[q, SIX[0, j]]
+                force += inverse[q, i, 1] * stress[q, SIX[1, j]]
+                force += inverse[q, i, 2] * stress[q, SIX[2, j]]
+                forces[q, i, j] = weights[q] * force
 
 
 @compiled
-def _wanted(stiffness: FloatArray, changes: FloatArray, wanted: FloatArray) -> float:
-    """Fill the pressures K M⁻¹ v (m,) of the volume changes v (m,); their energy."""
-    energy = 0.0
-    for c in range(len(changes)):
-        wanted[c] = 0.0
-        for d in range(len(changes)):
-            wanted[c] += stiffness[c, d] * changes[d]
-        energy += 0.5 * wanted[c] * changes[c]
-    return energy
-
-
-@compiled
-def _condense(
-    stiffness: FloatArray,
-    slopes: FloatArray,
-    products: FloatArray,
+def _fill_volumes(
+    weights: FloatArray, ratio: FloatArray, values: FloatArray, volumes: FloatArray
 ) -> None:
-    """Fill K M⁻¹ b (m, 3n)."""
-    count, size = slopes.shape
-    for c in range(count):
-        products[c, :] = 0.0
-        for d in range(count):
-            for i in range(size):
-                products[c, i] += stiffness[c, d] * slopes[d, i]
-
-
-@compiled
-def _add_lacking(
-    wanted: FloatArray, pressures: FloatArray, slopes: FloatArray, residual: FloatArray
-) -> None:
-    """Add what the pressures lack, by the slopes b (m, 3n), to the residual (3n,)."""
-    for c in range(len(wanted)):
-        for i in range(len(residual)):
-            residual[i] += (wanted[c] - pressures[c]) * slopes[c, i]
-
-
-@compiled
-def _spread(forces: FloatArray, residual: FloatArray, slopes: FloatArray) -> None:
-    """Sort the products (n, 3 + 3m) into the residual (3n,) and the slopes (m, 3n)."""
-    for a in range(len(forces)):
-        for i in range(3):
-            residual[3 * a + i] = forces[a, i]
-            for c in range(len(slopes)):
-                slopes[c, 3 * a + i] = forces[a, 3 + 3 * c + i]
+    """Fill w J φ (m, Q), what g is multiplied by in the slopes of the volume changes."""
+    for q in range(len(weights)):
+        for c in range(len(volumes)):
+            volumes[c, q] = weights[q] * ratio[q] * values[q, c]
 
 
 @compiled_parallel
@@ -235,7 +113,7 @@ def condensed_pressures(
     unknowns: FloatArray,
     nodes: IntArray,
     pressures: FloatArray,
-    stresses: FloatArray,
+    stressed: FloatArray,
     iterates_stresses: bool,
     gradients: FloatArray,
     weights: FloatArray,
@@ -246,67 +124,58 @@ def condensed_pressures(
     residual: FloatArray,
     tangent: FloatArray,
     volume_slopes: FloatArray,
-    volume_changes: FloatArray,
+    changes: FloatArray,
 ) -> float:
     """Elements with pressures p = Σ φ_c p_c of their own, condensed: the term b K M⁻¹ bᵀ remains.
 
     Shapes, with n nodes and m pressures an element: nodes (E, n), pressures (E, m), stresses S*
-    of the geometric part if they are iterated (E, Q, 6; see :mod:`pagd.fem.stress_kernels`),
+    of the geometric part if they are iterated (``stressed``, (E, Q, 6); see
+    :mod:`pagd.fem.stress_kernels`),
     gradients (E, Q, 3, n),
     weights (E, Q) in mm³, values (E, Q, m) of φ, stiffnesses K M⁻¹ (E, m, m) with
     M = ∫ φ φᵀ dV, residual (E, 3n), tangent (E, 3n (3n + 1)/2). Also fills b = ∂(∫ φ J dV)/∂u
     (E, m, 3n) and ∫ φ (J − 1) dV (E, m). Returns the energy, infinite where inverted.
     """
-    total = 0.0
+    energies = np.full(len(nodes), np.inf)
     count, points, functions = nodes.shape[1], weights.shape[1], pressures.shape[1]
     for chunk in prange(chunks(len(nodes))):
-        work, turning = _workspace(), np.empty(6)
-        displacements = np.empty((3, count))
-        spatial = np.empty((3 * points, count))
+        at, turning, here = points_of(count, points), np.empty((points, 6)), np.empty(points)
+        spatial = np.empty((points, 3, count))
         # Two products rather than one: OpenBLAS spreads larger ones over threads of its own.
-        equal, unequal = np.empty((3 * points, 3 * count)), np.empty((3 * points, 3 * count))
-        forces = np.empty((3 * points, 3 + 3 * functions))
+        equal, unequal = np.empty((points, 3, 3, count)), np.empty((points, 3, 3, count))
         equal_sum, unequal_sum = np.empty((count, 3 * count)), np.empty((count, 3 * count))
-        forces_sum = np.empty((count, 3 + 3 * functions))
-        products, wanted = np.empty((functions, 3 * count)), np.empty(functions)
+        forces, volumes = np.empty((points, 3, 3)), np.empty((functions, points))
+        forces_sum, volumes_sum = np.empty((count, 3)), np.empty((functions, 3 * count))
+        wanted, condensed = np.empty(functions), np.empty((3 * count, 3 * count))
+        rows, left = 3 * points, spatial.reshape(3 * points, count).T
         for e in range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(nodes))):
-            _gather(unknowns, nodes[e], displacements)
-            volume_changes[e, :] = 0.0
-            for q in range(points):
-                weight, first = weights[e, q], 3 * q
-                pressure = _combined(values[e, q], pressures[e])
-                here = spatial[first : first + 3]
-                energy, ratio = _state(
-                    displacements, gradients[e, q], pressure, law, parameters, work, here
-                )
-                total += weight * energy
-                stress, moduli = work[3], work[4]
-                if iterates_stresses:
-                    push_stress(work[0], stresses[e, q], turning)
-                    for i in range(3):
-                        turning[i] += ratio * pressure
-                else:
-                    turning[:] = stress
-                _fill_products(
-                    weight,
-                    turning,
-                    moduli,
-                    here,
-                    equal[first : first + 3],
-                    unequal[first : first + 3],
-                )
-                _fill_forces(weight, ratio, stress, values[e, q], forces[first : first + 3])
-                for c in range(functions):
-                    volume_changes[e, c] += weight * values[e, q, c] * (ratio - 1.0)
-            np.dot(spatial.T, equal, equal_sum)
-            np.dot(spatial.T, unequal, unequal_sum)
-            np.dot(spatial.T, forces, forces_sum)
-            _spread(forces_sum, residual[e], volume_slopes[e])
-            total += _wanted(stiffnesses[e], volume_changes[e], wanted)
-            _add_lacking(wanted, pressures[e], volume_slopes[e], residual[e])
-            _condense(stiffnesses[e], volume_slopes[e], products)
-            _pack(equal_sum, unequal_sum, volume_slopes[e], products, tangent[e])
-    return total
+            if not deform(unknowns, nodes[e], gradients[e], at):
+                continue
+            pressures_at(values[e], pressures[e], here)
+            responses(law, parameters, at.left, at.energy, at.stress, at.tangent)
+            add_pressures(here, at.ratio, at.stress)
+            add_pressure_tangents(here, at.ratio, at.tangent)
+            if iterates_stresses:
+                push_stresses(at.gradient, stressed[e], turning)
+                add_pressures(here, at.ratio, turning)
+            else:
+                turning[:] = at.stress
+            _push_forward(at.inverse, gradients[e], spatial)
+            _fill_products(weights[e], turning, at.tangent, spatial, equal, unequal)
+            _fill_forces(weights[e], at, forces)
+            _fill_volumes(weights[e], at.ratio, values[e], volumes)
+            np.dot(left, equal.reshape(rows, 3 * count), equal_sum)
+            np.dot(left, unequal.reshape(rows, 3 * count), unequal_sum)
+            np.dot(gradients[e].reshape(rows, count).T, forces.reshape(rows, 3), forces_sum)
+            np.dot(volumes, spatial.reshape(points, 3 * count), volumes_sum)
+            fill_volume_slopes(volumes_sum.reshape(functions, 3, count), volume_slopes[e])
+            volume_changes(weights[e], values[e], at.ratio, changes[e])
+            energies[e] = wanted_pressures(stiffnesses[e], changes[e], wanted)
+            energies[e] += integral(weights[e], at.energy)
+            fill_residual(forces_sum, wanted, pressures[e], volume_slopes[e], residual[e])
+            fill_condensed(stiffnesses[e], volume_slopes[e], volumes_sum, condensed)
+            pack(equal_sum, unequal_sum, condensed, tangent[e])
+    return float(energies.sum())
 
 
 @compiled_parallel
@@ -322,34 +191,28 @@ def residuals_near(
     parameters: FloatArray,
     residual: FloatArray,
     volume_slopes: FloatArray,
-    volume_changes: FloatArray,
+    changes: FloatArray,
 ) -> float:
     """The residual alone, with slopes b that are known from a state near by.
 
     Shapes as in :func:`condensed_pressures`; fills residual and volume changes.
     """
-    total = 0.0
+    energies = np.full(len(nodes), np.inf)
     count, points, functions = nodes.shape[1], weights.shape[1], pressures.shape[1]
     for chunk in prange(chunks(len(nodes))):
-        work, displacements = _workspace(), np.empty((3, count))
-        spatial, wanted = np.empty((3 * points, count)), np.empty(functions)
-        forces, forces_sum = np.zeros((3 * points, 3)), np.empty((count, 3))
+        at, here, wanted = points_of(count, points), np.empty(points), np.empty(functions)
+        forces, forces_sum = np.empty((points, 3, 3)), np.empty((count, 3))
+        rows = 3 * points
         for e in range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(nodes))):
-            _gather(unknowns, nodes[e], displacements)
-            volume_changes[e, :] = 0.0
-            for q in range(points):
-                weight, first = weights[e, q], 3 * q
-                pressure = _combined(values[e, q], pressures[e])
-                here = spatial[first : first + 3]
-                energy, ratio = _state(
-                    displacements, gradients[e, q], pressure, law, parameters, work, here
-                )
-                total += weight * energy
-                _fill_forces(weight, ratio, work[3], values[e, q, :0], forces[first : first + 3])
-                for c in range(functions):
-                    volume_changes[e, c] += weight * values[e, q, c] * (ratio - 1.0)
-            np.dot(spatial.T, forces, forces_sum)
-            _spread(forces_sum, residual[e], volume_slopes[e, :0])
-            total += _wanted(stiffnesses[e], volume_changes[e], wanted)
-            _add_lacking(wanted, pressures[e], volume_slopes[e], residual[e])
-    return total
+            if not deform(unknowns, nodes[e], gradients[e], at):
+                continue
+            pressures_at(values[e], pressures[e], here)
+            stresses(law, parameters, at.left, at.energy, at.stress)
+            add_pressures(here, at.ratio, at.stress)
+            _fill_forces(weights[e], at, forces)
+            np.dot(gradients[e].reshape(rows, count).T, forces.reshape(rows, 3), forces_sum)
+            volume_changes(weights[e], values[e], at.ratio, changes[e])
+            energies[e] = wanted_pressures(stiffnesses[e], changes[e], wanted)
+            energies[e] += integral(weights[e], at.energy)
+            fill_residual(forces_sum, wanted, pressures[e], volume_slopes[e], residual[e])
+    return float(energies.sum())

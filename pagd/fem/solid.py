@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.fem import solid_kernels
+from pagd.fem import field_kernels
 from pagd.fem.cells import cell_of, reference_geometry
 from pagd.fem.condensed_kernels import condensed_pressures, residuals_near
 from pagd.fem.quadrature import tetrahedron
@@ -262,7 +262,7 @@ def _energies(
     """Isochoric energies (E,) in mJ and J − 1 (E, Q)."""
     isochoric = np.empty(len(solid.nodes))
     change = np.empty(solid.weights.shape)
-    solid_kernels.energies(
+    field_kernels.energies(
         unknowns,
         solid.nodes,
         solid.gradients,
@@ -281,5 +281,5 @@ def principal_stretches(solid: Solid, unknowns: FloatArray, threshold: float = 0
     Where it is certainly below ``threshold`` it may be given as 0, which is quicker.
     """
     result = np.empty(solid.weights.shape)
-    solid_kernels.largest_stretches(unknowns, solid.nodes, solid.gradients, threshold, result)
+    field_kernels.largest_stretches(unknowns, solid.nodes, solid.gradients, threshold, result)
     return result

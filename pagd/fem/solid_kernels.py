@@ -1,4 +1,4 @@
-"""What the kernels of all solids do at a quadrature point; stretches and energies.
+"""What the kernels of solids do at a quadrature point; see :mod:`pagd.fem.point_kernels` too.
 
 Everything is written in the deformed configuration: with g_a = F⁻ᵀ ∇N_a, the
 Kirchhoff stress τ and the spatial tangent c, an element's residual is
@@ -14,16 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.compiled import compiled
-from pagd.fem.hyperelastic import deviatoric_response
+from pagd.fem.symmetric import FIRST, SECOND, SIX
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-#: Where entry (i, j) of a symmetric tensor stands among its six, xx yy zz xy yz zx; and the other
-#: way round.
-SIX = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
-FIRST = np.array([0, 1, 2, 0, 1, 2])
-SECOND = np.array([0, 1, 2, 1, 2, 0])
 
 #: Elements that one thread takes at once.
 CHUNK = 32
@@ -102,77 +96,3 @@ def push_stress(gradient: FloatArray, stress: FloatArray, result: FloatArray) ->
         for k in range(3):
             for n in range(3):
                 result[m] += gradient[i, k] * stress[SIX[k, n]] * gradient[j, n]
-
-
-@compiled
-def _largest_eigenvalue(matrix: FloatArray) -> float:
-    """Of a symmetric 3 × 3 matrix, in closed form (Smith, *Commun. ACM* 4 (1961) 168)."""
-    mean = (matrix[0, 0] + matrix[1, 1] + matrix[2, 2]) / 3.0
-    squared = 0.0
-    for i in range(3):
-        for j in range(3):
-            rest = matrix[i, j] - (mean if i == j else 0.0)
-            squared += rest * rest
-    size = np.sqrt(squared / 6.0)
-    if size <= 1e-15 * abs(mean):
-        return float(mean)
-    x, y, z = (
-        (matrix[0, 0] - mean) / size,
-        (matrix[1, 1] - mean) / size,
-        (matrix[2, 2] - mean) / size,
-    )
-    xy, yz, zx = matrix[0, 1] / size, matrix[1, 2] / size, matrix[0, 2] / size
-    half = 0.5 * (x * (y * z - yz * yz) - xy * (xy * z - yz * zx) + zx * (xy * yz - y * zx))
-    return float(mean + 2.0 * size * np.cos(np.arccos(min(max(half, -1.0), 1.0)) / 3.0))
-
-
-@compiled
-def largest_stretches(
-    unknowns: FloatArray,
-    nodes: IntArray,
-    gradients: FloatArray,
-    threshold: float,
-    result: FloatArray,
-) -> None:
-    """Largest principal stretch (E, Q); 0 where it is certainly below ``threshold``.
-
-    The sum of the squared stretches, tr FFᵀ, bounds the largest: axes are sought only where
-    that does not settle it.
-    """
-    gradient = np.empty((3, 3))
-    for e in range(len(nodes)):
-        for q in range(gradients.shape[1]):
-            deformation_gradient(unknowns, nodes[e], gradients[e, q], gradient)
-            result[e, q] = 0.0
-            if np.sum(gradient * gradient) >= threshold * threshold:
-                result[e, q] = np.sqrt(_largest_eigenvalue(gradient @ gradient.T))
-
-
-@compiled
-def energies(
-    unknowns: FloatArray,
-    nodes: IntArray,
-    gradients: FloatArray,
-    weights: FloatArray,
-    law: int,
-    parameters: FloatArray,
-    isochoric: FloatArray,
-    volume_change: FloatArray,
-) -> None:
-    """Isochoric energy (E,) and J − 1 (E, Q) of each element; infinite where inverted."""
-    gradient = np.empty((3, 3))
-    inverted = np.empty((3, 3))
-    b = np.empty((3, 3))
-    stress = np.empty(6)
-    tangent = np.empty((6, 6))
-    for e in range(len(nodes)):
-        isochoric[e] = 0.0
-        for q in range(weights.shape[1]):
-            deformation_gradient(unknowns, nodes[e], gradients[e, q], gradient)
-            ratio = inverse(gradient, inverted)
-            volume_change[e, q] = ratio - 1.0
-            if not ratio > SMALLEST_VOLUME_RATIO:
-                isochoric[e] = np.inf
-                continue
-            isochoric_left_stretch(gradient, ratio, b)
-            isochoric[e] += weights[e, q] * deviatoric_response(law, parameters, b, stress, tangent)

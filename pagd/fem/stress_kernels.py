@@ -15,44 +15,13 @@ import numpy as np
 from numba import prange
 from numpy.typing import NDArray
 
-from pagd.fem.compiled import compiled, compiled_parallel
-from pagd.fem.hyperelastic import deviatoric_response
-from pagd.fem.solid_kernels import (
-    CHUNK,
-    FIRST,
-    SECOND,
-    SMALLEST_VOLUME_RATIO,
-    chunks,
-    deformation_gradient,
-    inverse,
-    isochoric_left_stretch,
-    push_stress,
-)
+from pagd.fem.compiled import compiled_parallel
+from pagd.fem.hyperelastic import responses
+from pagd.fem.point_kernels import add_linearised, deform, fill_slopes, points_of, push_stresses
+from pagd.fem.solid_kernels import CHUNK, chunks
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-
-@compiled
-def _strain_of(
-    correction: FloatArray,
-    nodes: IntArray,
-    gradients: FloatArray,
-    inverted: FloatArray,
-    slope: FloatArray,
-    strain: FloatArray,
-) -> None:
-    """Fill the engineering strain (6,) of a correction on the deformed body."""
-    deformation_gradient(correction, nodes, gradients, slope)
-    for i in range(3):
-        slope[i, i] -= 1.0
-    for m in range(6):
-        i, j = FIRST[m], SECOND[m]
-        strain[m] = 0.0
-        for k in range(3):
-            strain[m] += slope[i, k] * inverted[k, j]
-            if m >= 3:
-                strain[m] += slope[j, k] * inverted[k, i]
 
 
 @compiled_parallel
@@ -71,20 +40,12 @@ def advance_stresses(
     Shapes: nodes (E, n), gradients (E, Q, 3, n).
     """
     for chunk in prange(chunks(len(nodes))):
-        gradient, inverted = np.empty((3, 3)), np.empty((3, 3))
-        b, slope = np.empty((3, 3)), np.empty((3, 3))
-        stress, tangent, strain = np.empty(6), np.empty((6, 6)), np.empty(6)
+        at, strain = points_of(nodes.shape[1], gradients.shape[1]), np.empty(6)
         for e in range(chunk * CHUNK, min((chunk + 1) * CHUNK, len(nodes))):
-            for q in range(gradients.shape[1]):
-                result[e, q, :] = 0.0
-                deformation_gradient(unknowns, nodes[e], gradients[e, q], gradient)
-                ratio = inverse(gradient, inverted)
-                if not ratio > SMALLEST_VOLUME_RATIO:
-                    continue
-                isochoric_left_stretch(gradient, ratio, b)
-                deviatoric_response(law, parameters, b, stress, tangent)
-                _strain_of(correction, nodes[e], gradients[e, q], inverted, slope, strain)
-                for m in range(6):
-                    for n in range(6):
-                        stress[m] += tangent[m, n] * strain[n]
-                push_stress(inverted, stress, result[e, q])
+            if not deform(unknowns, nodes[e], gradients[e], at):
+                result[e] = 0.0
+                continue
+            responses(law, parameters, at.left, at.energy, at.stress, at.tangent)
+            fill_slopes(correction, nodes[e], gradients[e], at)
+            add_linearised(at, strain)
+            push_stresses(at.inverse, at.stress, result[e])
