@@ -13,9 +13,13 @@ What is listed in ``__all__`` is imported when it is asked for: ``import pagd`` 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
+
+# As `typing` has it, whose import would take as long as all else that a served command imports.
+TYPE_CHECKING = False
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from pagd.catalogue import read_designs
     from pagd.dataset.frame import designs_of, frame_of, read_frame, write_frame
     from pagd.dataset.make import Dataset, make_dataset
