@@ -62,20 +62,32 @@ def _curvatures(positions: FloatArray, face: IntArray, result: FloatArray) -> No
 
 
 @compiled
-def _flat_guess(point: FloatArray, positions: FloatArray, face: IntArray) -> tuple[float, float]:
-    """Parameters of the point projected on the plane of the face's corners."""
-    d11, d12, d22, b1, b2 = 0.0, 0.0, 0.0, 0.0, 0.0
+def _flat_frame(positions: FloatArray, face: IntArray, frame: FloatArray) -> None:
+    """Fill the frame (3, 3) of the plane of a face's corners: a corner, and two slopes.
+
+    The slopes of the parameters r and s are those of a point that moves in that plane.
+    """
+    d11, d12, d22 = 0.0, 0.0, 0.0
     for i in range(3):
-        origin = positions[face[0], i]
-        u, v = positions[face[1], i] - origin, positions[face[2], i] - origin
-        w = point[i] - origin
+        origin = frame[0, i] = positions[face[0], i]
+        u = frame[1, i] = positions[face[1], i] - origin
+        v = frame[2, i] = positions[face[2], i] - origin
         d11 += u * u
         d12 += u * v
         d22 += v * v
-        b1 += u * w
-        b2 += v * w
     determinant = d11 * d22 - d12 * d12
-    return (d22 * b1 - d12 * b2) / determinant, (d11 * b2 - d12 * b1) / determinant
+    for i in range(3):
+        u, v = frame[1, i], frame[2, i]
+        frame[1, i] = (d22 * u - d12 * v) / determinant
+        frame[2, i] = (d11 * v - d12 * u) / determinant
+
+
+@compiled
+def _flat_guess(x: float, y: float, z: float, frame: FloatArray) -> tuple[float, float]:
+    """Parameters of a point projected on the plane of a face's corners."""
+    x, y, z = x - frame[0, 0], y - frame[0, 1], z - frame[0, 2]
+    r = x * frame[1, 0] + y * frame[1, 1] + z * frame[1, 2]
+    return r, x * frame[2, 0] + y * frame[2, 1] + z * frame[2, 2]
 
 
 @compiled
@@ -129,9 +141,26 @@ def project(
 
     The point may lie so far ``beyond`` the edges, in parameters. ``work`` (10, 6) is scratch.
     """
-    r, s = _flat_guess(point, positions, face)
+    frame = work[6:9, :3]
+    _flat_frame(positions, face, frame)
+    r, s = _flat_guess(point[0], point[1], point[2], frame)
     if r < -_FLAT_BEYOND or s < -_FLAT_BEYOND or r + s > 1 + _FLAT_BEYOND:
         return math.inf
+    return _project_from(r, s, point, positions, face, parameters, work, beyond)
+
+
+@compiled
+def _project_from(
+    r: float,
+    s: float,
+    point: FloatArray,
+    positions: FloatArray,
+    face: IntArray,
+    parameters: FloatArray,
+    work: FloatArray,
+    beyond: float,
+) -> float:
+    """The same from a first guess of the parameters."""
     values, slopes = work[0], work[1:3]
     difference, tangents, second = work[3, :3], work[4:6, :3], work[6:9, :3]
     normal = work[9, :3]
@@ -195,19 +224,28 @@ def find_gaps(
     point whose gap was smaller than ``keeps`` keeps its face while it is above it or little beyond.
     """
     for e in prange(slaves.shape[0]):
-        point, found, work = np.empty(3), np.empty(2), np.empty((10, 6))
+        points, found = np.empty((values.shape[0], 3)), np.empty(2)
+        frame, work = np.empty((3, 3)), np.empty((10, 6))
+        kept = np.zeros(values.shape[0], np.bool_)
         for q in range(values.shape[0]):
-            slave_point(positions, slaves[e], values[q], point)
+            slave_point(positions, slaves[e], values[q], points[q])
             if entries[e, q] >= 0 and gaps[e, q] < keeps:
-                kept = masters[candidates[entries[e, q]]]
-                gap = project(point, positions, kept, found, work, _STAYS_BEYOND)
+                face = masters[candidates[entries[e, q]]]
+                gap = project(points[q], positions, face, found, work, _STAYS_BEYOND)
                 if gap < math.inf:
-                    gaps[e, q] = gap
+                    gaps[e, q], kept[q] = gap, True
                     parameters[e, q, 0], parameters[e, q, 1] = found[0], found[1]
                     continue
             gaps[e, q], entries[e, q] = math.inf, -1
-            for c in range(starts[e], starts[e + 1]):
-                gap = project(point, positions, masters[candidates[c]], found, work)
+        for c in range(starts[e], starts[e + 1]):
+            face = masters[candidates[c]]
+            _flat_frame(positions, face, frame)
+            for q in range(values.shape[0]):
+                r, s = _flat_guess(points[q, 0], points[q, 1], points[q, 2], frame)
+                far = r < -_FLAT_BEYOND or s < -_FLAT_BEYOND or r + s > 1 + _FLAT_BEYOND
+                if far or kept[q]:
+                    continue
+                gap = _project_from(r, s, points[q], positions, face, found, work, _BEYOND)
                 if gap > -deepest and abs(gap) < abs(gaps[e, q]):
                     gaps[e, q], entries[e, q] = gap, c
                     parameters[e, q, 0], parameters[e, q, 1] = found[0], found[1]
