@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pagd.record import read_record
 
-from .conftest import ROOT, STRAIGHT, Project
+from .conftest import ROOT, STRAIGHT, THIN, Project
 
 
 def test_stages_run_in_forks_of_the_server(project: Project) -> None:
@@ -47,6 +47,15 @@ def test_stages_run_in_forks_of_the_server(project: Project) -> None:
     assert project.snakemake("--unlock").returncode == 0
     assert project.snakemake("--", target).returncode == 0
     assert read_record(project / "designs/straight/geometry").status == "ok"
+
+
+def test_a_run_on_this_machine_has_no_limit_of_jobs_per_second(project: Project) -> None:
+    """With one, the looks at the ready jobs grow more and more frequent."""
+    project.write(THIN, THIN.replace("thin", "other"))
+    targets = [f"results/designs/{name}/mesh" for name in ("thin", "other")]
+    answer = project.snakemake("--max-jobs-per-timespan", "1/1s", "--", *targets)
+    assert answer.returncode == 0, answer.stderr
+    assert "rate limit" not in answer.stderr
 
 
 def status(process: int) -> str:

@@ -20,6 +20,7 @@ from pagd.tables import read_rows, units
 from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project, undeclared_tables
 
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
+DESIGN_RULES = ("prepare", "solve", "metrics", "figures")
 GATHERED = {
     "summary/performance.parquet",
     "summary/by_pressure.parquet",
@@ -67,7 +68,8 @@ def test_every_design_leaves_every_record(finished: Project) -> None:
             assert (record.design_id, record.stage) == (name, stage)
             assert record.status == ("invalid_geometry" if name == "thin" else "ok")
             assert (finished / f"logs/{stage}/{name}.log").is_file()
-            assert (finished / f"benchmarks/{stage}/{name}.tsv").is_file()
+        for rule in DESIGN_RULES:
+            assert (finished / f"benchmarks/{rule}/{name}.tsv").is_file()
 
 
 def test_the_summary_holds_failed_designs_too(finished: Project) -> None:
@@ -228,6 +230,13 @@ def test_a_better_citation_runs_nothing(changed: Project) -> None:
     assert changed.pending() == set()
 
 
+def test_a_changed_mesh_runs_from_the_geometry_on(changed: Project) -> None:
+    """Geometry, repair and mesh are one job."""
+    changed.write(STRAIGHT, SLANTED, THIN, mesh={"size_mm": 5.5})
+    expected = {p for name in ("straight", "slanted", "thin") for p in of_design(name)}
+    assert changed.pending() == expected | GATHERED
+
+
 def test_a_mesher_out_of_time_is_recorded(project: Project) -> None:
     project.write(STRAIGHT, THIN, mesh={"time_limit_s": 0.001, "meshers": ["gmsh"]})
     answer = project.snakemake()
@@ -291,7 +300,7 @@ def test_dry_run_of_the_repository(tmp_path: Path) -> None:
     counts = dict(re.findall(r"^(\w+) +(\d+)$", said(answer), re.MULTILINE))
     # Known designs are there at once; generated ones join when they are selected.
     known = sum(len(path.read_text().splitlines()) - 1 for path in KNOWN)
-    expected = dict.fromkeys(STAGES[:-1], str(known)) | dict.fromkeys(GENERATIVE_RULES, "1")
+    expected = dict.fromkeys(DESIGN_RULES[:-1], str(known)) | dict.fromkeys(GENERATIVE_RULES, "1")
     assert {rule: counts[rule] for rule in expected} == expected
     assert list(tmp_path.glob("results/*")) == []
 
@@ -308,8 +317,9 @@ def test_every_rule_says_what_it_does_and_needs(file: Path) -> None:
     for name, body in zip(rules[::2], rules[1::2], strict=True):
         if "output:" not in body:  # a target
             continue
-        for directive in ("log:", "benchmark:", "message:", "resources:", "version=STAGE_VERS"):
+        for directive in ("log:", "benchmark:", "message:", "resources:"):
             assert directive in body, f"{name} lacks {directive}"
+        assert re.search(r"\bversions?=.*STAGE_VERSIONS", body), f"{name} lacks its version"
         assert not re.search(r"\b(run|lambda)\b.*:", body), name
         commands = re.search(r"shell:\n((?: +\".*\"\n)+)", body)
         for value in re.findall(r"{[^}]+}", commands[1] if commands else ""):

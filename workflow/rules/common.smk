@@ -1,6 +1,7 @@
 # The configuration and the designs, checked once, and what the rules ask of them.
 
 import functools
+import gc
 import json
 import sys
 from pathlib import Path
@@ -20,6 +21,10 @@ from pagd.config import (
 )
 from pagd.errors import InputError
 from pagd.stages import STAGE_VERSIONS
+
+# Snakemake's objects for the jobs stay to the end: Python need not look among them for what has
+# become free each time that a few hundred more are there.
+gc.set_threshold(100_000, 50, 100)
 
 # Jobs use the Python that runs Snakemake, activated or not.
 shell.prefix(f"export PATH={quote(str(Path(sys.executable).parent))}:$PATH; ")

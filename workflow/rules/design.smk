@@ -1,78 +1,49 @@
 # One design, stage by stage. Every stage leaves a folder with a record, also for a design that
 # fails as designs may; the stages after it pass its status on within a fraction of a second.
+#
+# The first three take a second together, and are one job: with a job each, what Snakemake does for
+# every job is most of the time of a dry run, and a good part of that of a sweep besides the solves.
+# All take the folder for temporary files from their environment (`tmpdir=None`): Snakemake would
+# look for it job by job.
 
 
-rule geometry:
+rule prepare:
     input:
         selection=selection_of_design,
     output:
         geometry=directory("results/designs/{design}/geometry"),
-    log:
-        "results/logs/geometry/{design}.log",
-    benchmark:
-        "results/benchmarks/geometry/{design}.tsv"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        version=STAGE_VERSIONS["geometry"],
-        design=design_row,
-        config=config_of("geometry"),
-    message:
-        "Draw design {wildcards.design} with OpenSCAD."
-    shell:
-        "pagd geometry --design {params.design:q} --config {params.config:q}"
-        " --keep-going --out {output.geometry:q} > {log:q} 2>&1"
-
-
-rule repair:
-    input:
-        geometry=rules.geometry.output.geometry,
-    output:
         repair=directory("results/designs/{design}/repair"),
-    log:
-        "results/logs/repair/{design}.log",
-    benchmark:
-        "results/benchmarks/repair/{design}.tsv"
-    resources:
-        mem_mb=1000,
-        runtime=10,
-    params:
-        version=STAGE_VERSIONS["repair"],
-        config=config_of("repair"),
-    message:
-        "Check and repair the surfaces of design {wildcards.design}."
-    shell:
-        "pagd repair --geometry {input.geometry:q} --config {params.config:q}"
-        " --keep-going --out {output.repair:q} > {log:q} 2>&1"
-
-
-rule mesh:
-    input:
-        geometry=rules.geometry.output.geometry,
-        repair=rules.repair.output.repair,
-    output:
         mesh=directory("results/designs/{design}/mesh"),
     log:
-        "results/logs/mesh/{design}.log",
+        geometry="results/logs/geometry/{design}.log",
+        repair="results/logs/repair/{design}.log",
+        mesh="results/logs/mesh/{design}.log",
     benchmark:
-        "results/benchmarks/mesh/{design}.tsv"
+        "results/benchmarks/prepare/{design}.tsv"
     resources:
         mem_mb=2000,
-        runtime=30,
+        runtime=40,
+        tmpdir=None,
     params:
-        version=STAGE_VERSIONS["mesh"],
-        config=config_of("mesh"),
+        versions=[STAGE_VERSIONS[stage] for stage in ("geometry", "repair", "mesh")],
+        design=design_row,
+        geometry=config_of("geometry"),
+        repair=config_of("repair"),
+        mesh=config_of("mesh"),
     message:
-        "Mesh design {wildcards.design}."
+        "Draw, check and mesh design {wildcards.design}."
     shell:
-        "pagd mesh --geometry {input.geometry:q} --repair {input.repair:q}"
-        " --config {params.config:q} --keep-going --out {output.mesh:q} > {log:q} 2>&1"
+        "pagd geometry --design {params.design:q} --config {params.geometry:q}"
+        " --keep-going --out {output.geometry:q} > {log.geometry:q} 2>&1\n"
+        "pagd repair --geometry {output.geometry:q} --config {params.repair:q}"
+        " --keep-going --out {output.repair:q} > {log.repair:q} 2>&1\n"
+        "pagd mesh --geometry {output.geometry:q} --repair {output.repair:q}"
+        " --config {params.mesh:q} --keep-going --out {output.mesh:q} > {log.mesh:q} 2>&1"
 
 
 rule solve:
     input:
-        mesh=rules.mesh.output.mesh,
+        mesh=rules.prepare.output.mesh,
     output:
         solve=directory("results/designs/{design}/solve"),
     log:
@@ -84,6 +55,7 @@ rule solve:
     resources:
         mem_mb=4000,
         runtime=120,
+        tmpdir=None,
     params:
         version=STAGE_VERSIONS["solve"],
         config=config_of("solve"),
@@ -99,9 +71,9 @@ rule solve:
 
 rule metrics:
     input:
-        geometry=rules.geometry.output.geometry,
-        repair=rules.repair.output.repair,
-        mesh=rules.mesh.output.mesh,
+        geometry=rules.prepare.output.geometry,
+        repair=rules.prepare.output.repair,
+        mesh=rules.prepare.output.mesh,
         solve=rules.solve.output.solve,
     output:
         metrics=directory("results/designs/{design}/metrics"),
@@ -112,6 +84,7 @@ rule metrics:
     resources:
         mem_mb=1000,
         runtime=10,
+        tmpdir=None,
     params:
         version=STAGE_VERSIONS["metrics"],
         config=config_of("metrics"),

@@ -12,9 +12,9 @@ rule publish:
 
 rule figures:
     input:
-        geometry=rules.geometry.output.geometry,
-        repair=rules.repair.output.repair,
-        mesh=rules.mesh.output.mesh,
+        geometry=rules.prepare.output.geometry,
+        repair=rules.prepare.output.repair,
+        mesh=rules.prepare.output.mesh,
         solve=rules.solve.output.solve,
         metrics=rules.metrics.output.metrics,
     output:
@@ -46,7 +46,7 @@ rule figures:
 
 rule pictures_together:
     input:
-        mesh=of_drawn_designs(rules.mesh.output.mesh),
+        mesh=of_drawn_designs(rules.prepare.output.mesh),
         solve=of_drawn_designs(rules.solve.output.solve),
         metrics=of_drawn_designs(rules.metrics.output.metrics),
     output:
@@ -133,7 +133,7 @@ rule pictures_generative:
 
 rule report_page:
     input:
-        mesh=of_drawn_designs(rules.mesh.output.mesh),
+        mesh=of_drawn_designs(rules.prepare.output.mesh),
         solve=of_drawn_designs(rules.solve.output.solve),
         metrics=of_drawn_designs(rules.metrics.output.metrics),
         figures=of_drawn_designs(rules.figures.output.figures),

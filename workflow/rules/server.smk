@@ -7,3 +7,7 @@ from pagd.cli import server
 
 onstart:
     server.start()
+    # To limit the jobs per second, which a cluster may want, Snakemake sets a timer for each job that
+    # ends, and another one whenever one has run out: after thousands of jobs it does little else.
+    if workflow.local_exec:
+        workflow.scheduler.job_rate_limiter = None

@@ -15,7 +15,7 @@ rule summary:
 
 rule summary_tables:
     input:
-        geometry=of_all_designs(rules.geometry.output.geometry),
+        geometry=of_all_designs(rules.prepare.output.geometry),
         metrics=of_all_designs(rules.metrics.output.metrics),
         dataset=of_generative_half(rules.dataset.output.dataset),
     output:
