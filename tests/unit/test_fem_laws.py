@@ -8,7 +8,7 @@ from fem_checks import LAWS, elastomer
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from pagd.fem.hyperelastic import deviatoric_response
+from pagd.fem.hyperelastic import deviatoric_response, responses, stresses
 from pagd.materials import Elastomer
 
 FloatArray = NDArray[np.float64]
@@ -94,6 +94,24 @@ def test_stress_is_deviatoric_and_tangent_symmetric(
     _, stress, tangent = response(material, gradient)
     assert np.trace(stress) == pytest.approx(0.0, abs=1e-13)
     np.testing.assert_allclose(tangent, tangent.T, atol=1e-13)
+
+
+@each_law
+def test_many_points_at_once(material: Elastomer) -> None:
+    """What the kernels call for all points of an element is the response of each of them."""
+    gradients = [np.asarray(case.values[0]) for case in GRADIENTS]
+    lefts = np.array([g @ g.T / np.linalg.det(g) ** (2 / 3) for g in gradients])
+    energy, stress, tangent = np.empty(5), np.empty((5, 6)), np.empty((5, 6, 6))
+    responses(material.kind, material.parameters, lefts, energy, stress, tangent)
+    for q, gradient in enumerate(gradients):
+        single = response(material, gradient)
+        assert energy[q] == pytest.approx(single[0], rel=1e-13, abs=1e-16)
+        np.testing.assert_allclose(stress[q], single[1][_FIRST, _SECOND], atol=1e-14)
+        np.testing.assert_allclose(tangent[q], single[2], atol=1e-13)
+    energy_alone, stress_alone = np.empty(5), np.empty((5, 6))
+    stresses(material.kind, material.parameters, lefts, energy_alone, stress_alone)
+    np.testing.assert_allclose(energy_alone, energy, rtol=1e-13, atol=1e-16)
+    np.testing.assert_allclose(stress_alone, stress, atol=1e-14)
 
 
 @each_law
