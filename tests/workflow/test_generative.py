@@ -161,7 +161,7 @@ def test_another_seed_runs_the_designs_whose_rows_change(copied: Project) -> Non
     seed = ("--config", 'generator={"seed": 2}')
     planned = jobs(copied.snakemake("--dry-run", *seed))
     assert {"generate", "diversity", "select"} <= set(planned)
-    assert not {"dataset", "embedding", "geometry"} & set(planned)
+    assert not {"dataset", "embedding", "prepare"} & set(planned)
     assert copied.snakemake("results/selection", *seed).returncode == 0
     after = selected(copied)
     changed = [name for name in after if after[name] != before.get(name)]
@@ -178,8 +178,8 @@ def test_the_sweep_takes_all_and_leaves_what_is_done(copied: Project) -> None:
     new = selected(copied).keys() - before.keys()
     assert len(new) + len(before) == GENERATIVE["generator"]["designs"]
     planned = jobs(sweep("--dry-run", "--", "summary"))
-    for stage in ("geometry", "repair", "mesh", "solve", "metrics"):
-        assert planned[stage] == len(new)
+    for rule in ("prepare", "solve", "metrics"):
+        assert planned[rule] == len(new)
 
     # The default profile has nothing to add to what the sweep has made.
     target = f"results/designs/{min(new)}/metrics"
