@@ -2,8 +2,9 @@
 
 The potential is ∫ ψ(g) dA over the undeformed slave faces, g the gap to the nearest master face
 and ψ a penalty whose pressure begins without a kink (:func:`contact_kernels.pressure_law`): with
-stiffness ε the pressure p presses the faces p/ε into each other. The residual is its derivative;
-the tangent, symmetric, is that of the residual but for a limit, see :class:`ContactLaw`.
+stiffness ε the pressure p presses the faces p/ε into each other. The residual is its derivative,
+but for pressures that are iterated (:mod:`pagd.fem.contact_pressures`); the tangent, symmetric, is
+that of the residual.
 
 Which faces are near changes along the path. The pairs of faces that the tangent couples are kept
 in a set that only grows, and :meth:`FaceContact.update` tells when it has.
@@ -19,13 +20,17 @@ from scipy.spatial import KDTree
 
 from pagd.fem import contact_kernels as kernels
 from pagd.fem import shapes
+from pagd.fem.contact_pressures import advance_pressures, linearize_contact
 from pagd.fem.faces import face_areas
 from pagd.fem.quadrature import divided, triangle
-from pagd.fem.term import NO_INTERNAL, ElementSystem, node_dofs
+from pagd.fem.term import ElementSystem, node_dofs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+
+#: In place of iterated pressures: those of the law at the state itself.
+BY_LAW: FloatArray = np.zeros((0, 0))
 
 # 27 points a face: between fewer, curved faces overlap unseen (with six on 5 mm faces by twice the
 # depth at the points).
@@ -44,24 +49,25 @@ class ContactLaw:
     stiffness
         Pressure by penetration ε, in MPa/mm.
     width
-        Pressure begins at this gap, in mm, and is linear in the penetration beyond it. A trial
-        state with a larger penetration is not trusted.
+        Pressure begins at this gap, in mm, and is linear in the penetration beyond it.
+    trusted
+        A trial state with a larger penetration than this, in mm, is not trusted.
+    first_pressure
+        A point that comes into contact begins with this pressure, in MPa, at most.
     reach
         Faces with a point nearer than this, in mm, must be coupled; where any are not, so are
         those within twice of it, since each search that finds more costs an analysis.
     deepest
         A face found farther behind another than this, in mm, is no penetration but the far side
         of it; one that was near it before has jumped through.
-    steady
-        The turning of the normal enters the tangent up to the pressure of so much penetration, in
-        mm: with all the pressure of a first guess that is too deep the tangent is indefinite.
     """
 
-    stiffness: float = 20.0
-    width: float = 0.04
+    stiffness: float = 12.0
+    width: float = 0.06
+    trusted: float = 0.3
+    first_pressure: float = 0.02
     reach: float = 0.5
     deepest: float = 0.75
-    steady: float = 0.02
 
 
 class FaceContact:
@@ -92,6 +98,11 @@ class FaceContact:
         self._keys = np.zeros(0, np.int64)
         self._forget()
         self.dofs: IntArray = np.zeros((0, 36), np.int64)
+        self._scratch = ElementSystem.of(self.dofs)
+        # Of the state linearised last: places of the nodes; p*, p′ and k of the points.
+        self._last_positions = points
+        self._iterated: FloatArray = np.zeros(0)
+        self._pressures, self._slopes = np.zeros_like(self._areas), np.zeros_like(self._areas)
 
     def _forget(self) -> None:
         self._starts = np.zeros(len(self._slaves) + 1, np.int64)
@@ -129,19 +140,34 @@ class FaceContact:
         return gap
 
     def internal_at_rest(self) -> FloatArray:
-        """There are none."""
-        return NO_INTERNAL
+        """Iterated pressures (S, Q) in MPa: none."""
+        return np.zeros_like(self._areas)
 
     def linearize(
         self, unknowns: FloatArray, internal: FloatArray, load: float, system: ElementSystem
     ) -> float:
         """Fill the element system; see :class:`pagd.fem.term.EnergyTerm`."""
-        positions = self._positions(unknowns)
+        return self._linearize(unknowns, internal, system, keeps_slopes=False)
+
+    def residual_near(
+        self, unknowns: FloatArray, internal: FloatArray, load: float, residual: FloatArray
+    ) -> float:
+        """Fill the residual; see :class:`pagd.fem.term.CondensingTerm`."""
+        system = self._room()
+        energy = self._linearize(unknowns, internal, system, keeps_slopes=True)
+        residual[:] = system.residual
+        return energy
+
+    def _linearize(
+        self, unknowns: FloatArray, internal: FloatArray, system: ElementSystem, keeps_slopes: bool
+    ) -> float:
+        positions = self._last_positions = self._positions(unknowns)
         self._project(positions, keeps=self.law.reach)
+        self._iterated = internal
         system.residual[:] = 0.0
         system.tangent[:] = 0.0
         found = self._found
-        kernels.linearize_contact(
+        linearize_contact(
             positions,
             self._slaves,
             self._masters,
@@ -154,7 +180,12 @@ class FaceContact:
             found.parameters,
             self.law.stiffness,
             self.law.width,
-            self.law.steady,
+            self.law.first_pressure,
+            internal,
+            internal.size == 0,
+            keeps_slopes,
+            self._pressures,
+            self._slopes,
             system.residual,
             system.tangent,
             found.energies,
@@ -162,12 +193,33 @@ class FaceContact:
         return float(found.energies.sum())
 
     def advance(self, correction: FloatArray) -> FloatArray:
-        """Nothing to advance."""
-        return NO_INTERNAL
+        """The iterated pressures (S, Q)."""
+        result = np.empty_like(self._pressures)
+        advance_pressures(
+            self._last_positions,
+            correction,
+            self._slaves,
+            self._masters,
+            self._values,
+            self._candidates,
+            self._found.entries,
+            self._found.parameters,
+            self._iterated,
+            self._pressures,
+            self._slopes,
+            result,
+        )
+        return result
 
     def energy(self, unknowns: FloatArray, load: float) -> float:
         """Energy of the penetration, in mJ."""
-        return self.linearize(unknowns, NO_INTERNAL, load, ElementSystem.of(self.dofs))
+        return self.linearize(unknowns, BY_LAW, load, self._room())
+
+    def _room(self) -> ElementSystem:
+        """A system for what is not assembled."""
+        if len(self._scratch.residual) != len(self.dofs):
+            self._scratch = ElementSystem.of(self.dofs)
+        return self._scratch
 
     @property
     def smallest_gap(self) -> float:
@@ -176,8 +228,8 @@ class FaceContact:
 
     @property
     def excess(self) -> float:
-        """How much deeper (mm) than the law's width faces are pressed at the state seen last."""
-        return max(-self.law.width - self.smallest_gap, 0.0)
+        """How much deeper (mm) than can be trusted faces are pressed at the state seen last."""
+        return max(-self.law.trusted - self.smallest_gap, 0.0)
 
     @property
     def touching(self) -> int:

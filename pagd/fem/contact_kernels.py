@@ -268,7 +268,7 @@ def pressure_law(gap: float, stiffness: float, width: float) -> tuple[float, flo
 
 
 @compiled
-def _gap_derivatives(
+def gap_derivatives(
     positions: FloatArray,
     face: IntArray,
     slave_values: FloatArray,
@@ -319,11 +319,11 @@ def _gap_derivatives(
 
 
 @compiled
-def _add(
+def add_gap(
     slope: float,
     curvature: float,
+    shown: float,
     gap: float,
-    steady: float,
     normal: FloatArray,
     weights: FloatArray,
     along: FloatArray,
@@ -334,9 +334,8 @@ def _add(
 ) -> None:
     """Add slope ∇g to the residual (36,), and its derivative to the packed tangent (666,).
 
-    The part of ∇²g takes no more of the slope than ``steady`` (mm) of the curvature.
+    ``shown`` is what ∇²g is multiplied by, the slope or a part of it.
     """
-    shown = max(slope, -steady * curvature)
     bent, inverse = coefficients[0], coefficients[1]
     left, right, entry = np.empty(2), np.empty(2), 0
     for i in range(36):
@@ -354,66 +353,3 @@ def _add(
             gj = weights[j // 3] * normal[j % 3]
             tangent[entry] += curvature * gi * gj + shown * second
             entry += 1
-
-
-@compiled_parallel
-def linearize_contact(
-    positions: FloatArray,
-    slaves: IntArray,
-    masters: IntArray,
-    values: FloatArray,
-    areas: FloatArray,
-    candidates: IntArray,
-    pairs: IntArray,
-    gaps: FloatArray,
-    entries: IntArray,
-    parameters: FloatArray,
-    stiffness: float,
-    width: float,
-    steady: float,
-    residual: FloatArray,
-    tangent: FloatArray,
-    energies: FloatArray,
-) -> None:
-    """Residuals (P, 36) and packed tangents (P, 666) of the pairs; energies (S,) by slave face.
-
-    ``areas`` (S, Q) are the undeformed areas of the quadrature points and ``pairs`` the pair of
-    each candidate, or −1.
-    """
-    for e in prange(slaves.shape[0]):
-        normal, weights = np.zeros(3), np.empty(12)
-        along, turning = np.empty((2, 36)), np.empty((2, 36))
-        coefficients, work = np.empty((2, 2, 2)), np.empty((10, 6))
-        energies[e] = 0.0
-        for q in range(values.shape[0]):
-            c = entries[e, q]
-            if c < 0 or pairs[c] < 0 or gaps[e, q] >= width:
-                continue
-            energy, slope, curvature = pressure_law(gaps[e, q], stiffness, width)
-            energies[e] += areas[e, q] * energy
-            _gap_derivatives(
-                positions,
-                masters[candidates[c]],
-                values[q],
-                parameters[e, q],
-                gaps[e, q],
-                normal,
-                weights,
-                along,
-                turning,
-                coefficients,
-                work,
-            )
-            _add(
-                areas[e, q] * slope,
-                areas[e, q] * curvature,
-                gaps[e, q],
-                steady,
-                normal,
-                weights,
-                along,
-                turning,
-                coefficients,
-                residual[pairs[c]],
-                tangent[pairs[c]],
-            )

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from pagd.fem.contact import ContactLaw, FaceContact
 from pagd.fem.contact_kernels import pressure_law, project
+from pagd.fem.contact_pressures import inverse_law, pressure_near
+from pagd.fem.term import ElementSystem
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -47,28 +49,34 @@ def waves(points: FloatArray, size: float = 0.05, seed: int = 0) -> FloatArray:
 
 @pytest.mark.parametrize(("width", "step"), [(0.02, 1e-6), (0.3, 1e-5)])
 def test_derivatives_on_curved_faces(width: float, step: float) -> None:
-    law = ContactLaw(stiffness=5.0, width=width, reach=1.0, steady=math.inf)
+    law = ContactLaw(stiffness=5.0, width=width, reach=1.0)
     contact, points = facing(-0.03, law)
     unknowns = waves(points)
     assert contact.update(unknowns)
     check_derivatives(contact, unknowns, step=step)
 
 
-def test_deep_faces_pull_in_no_direction() -> None:
-    """With no part of the turning normal, the tangent has no negative eigenvalue; else it has."""
-    lowest = []
-    for steady in (0.0, math.inf):
-        contact, points = facing(-0.4, ContactLaw(reach=1.0, steady=steady))
-        unknowns = waves(points)
-        contact.update(unknowns)
-        lowest.append(np.linalg.eigvalsh(linearized(contact, unknowns, 0.0)[2])[0])
-    assert lowest[0] > -1e-10
-    assert lowest[1] < -0.1
+def test_the_first_tangent_of_deep_faces_has_little_of_the_turning_normal() -> None:
+    """With all the pressure the tangent has negative eigenvalues; at first it has a part of it."""
+    contact, points = facing(-0.4, ContactLaw(reach=1.0))
+    unknowns = waves(points)
+    contact.update(unknowns)
+    system = ElementSystem.of(contact.dofs)
+    contact.linearize(unknowns, contact.internal_at_rest(), 0.0, system)
+    full = np.zeros((len(contact.dofs), 36, 36))
+    rows, columns = np.triu_indices(36)
+    full[:, rows, columns] = full[:, columns, rows] = system.tangent
+    first = np.zeros((unknowns.size, unknowns.size))
+    np.add.at(first, (contact.dofs[:, :, None], contact.dofs[:, None, :]), full)
+    last = linearized(contact, unknowns, 0.0)[2]
+    lowest, converged = (np.linalg.eigvalsh(matrix)[0] for matrix in (first, last))
+    assert converged < -0.1
+    assert converged < 20 * lowest < 0
 
 
-def test_too_deep_is_deeper_than_the_width() -> None:
+def test_too_deep_is_deeper_than_is_trusted() -> None:
     for gap, excess in ((0.0, 0.0), (-0.05, 0.0), (-0.07, 0.01)):
-        contact, points = facing(gap, ContactLaw(width=0.06))
+        contact, points = facing(gap, ContactLaw(trusted=0.06))
         contact.update(np.zeros(points.size))
         assert contact.excess == pytest.approx(excess)
 
@@ -169,9 +177,9 @@ def test_a_jump_through_a_wall_is_too_deep() -> None:
     through = np.zeros(points.shape)
     through[25:, 2] = -2.3
     assert contact.energy(through.ravel(), 0.0) > 0
-    assert contact.excess == pytest.approx(2.0 - 0.04)
+    assert contact.excess == pytest.approx(2.0 - ContactLaw().trusted)
     assert not contact.update(through.ravel())
-    assert contact.excess == pytest.approx(2.0 - 0.04)
+    assert contact.excess == pytest.approx(2.0 - ContactLaw().trusted)
     contact.update(np.zeros(points.size))
     assert contact.smallest_gap == pytest.approx(0.3)
 
@@ -214,6 +222,51 @@ def test_the_pressure_has_no_kink() -> None:
         assert energy >= 0
         assert slope <= 0
     assert pressure_law(-0.1, stiffness, width)[1] == pytest.approx(-2.0)
+
+
+@pytest.mark.parametrize("pressure", [1e-4, 0.02, 0.5, 0.6, 3.0])
+def test_the_inverse_of_the_law(pressure: float) -> None:
+    stiffness, width = 10.0, 0.06
+    closing, slope = inverse_law(pressure, stiffness, width)
+    _, force, curvature = pressure_law(width - closing, stiffness, width)
+    assert -force == pytest.approx(pressure, rel=1e-12)
+    assert slope == pytest.approx(curvature, rel=1e-12)
+
+
+def test_iterated_pressures_come_to_that_of_the_law() -> None:
+    """At a gap that stays; from little, from much, and from a point that has just come near."""
+    law = ContactLaw()
+    for gap in (0.05, 0.0, -0.1):
+        wanted = -pressure_law(gap, law.stiffness, law.width)[1]
+        for iterated in (0.0, 1e-3, 5.0):
+            for _ in range(30):
+                iterated = pressure_near(
+                    iterated, gap, law.stiffness, law.width, law.first_pressure
+                )[0]
+            assert iterated == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_point_that_opens_has_no_pressure() -> None:
+    law = ContactLaw()
+    known = (law.stiffness, law.width, law.first_pressure)
+    assert pressure_near(0.0, law.width, *known) == (0.0, 0.0, 0.0)
+    assert pressure_near(0.01, 1.0, *known) == (0.0, 0.0, 0.0)
+
+
+def test_a_correction_takes_the_pressures_along() -> None:
+    """To that of the law at the gap it leads to, as far as the inverse law is linear."""
+    contact, points = facing(-0.1, ContactLaw(width=0.02))
+    unknowns, deeper = np.zeros(points.size), np.zeros(points.shape)
+    contact.update(unknowns)
+    internal = contact.internal_at_rest()
+    for _ in range(30):
+        contact.linearize(unknowns, internal, 0.0, ElementSystem.of(contact.dofs))
+        internal = contact.advance(unknowns)
+    deeper[25:, 2] = -0.01
+    after = contact.advance(deeper.ravel())
+    law = contact.law
+    assert internal.max() == pytest.approx(0.1 * law.stiffness, rel=1e-9)
+    np.testing.assert_allclose(after[internal > 0], 0.11 * law.stiffness, rtol=1e-9)
 
 
 def test_the_closest_point_on_a_curved_face() -> None:

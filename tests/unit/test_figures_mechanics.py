@@ -181,13 +181,13 @@ def test_touching_parts_are_seen_through_the_body():
 
 
 def test_contact_shows_gaps_and_the_first_touch():
-    analyses = {"free": steps_of(closing=0.0053), "held": steps_of()}
+    analyses = {"free": steps_of(closing=0.0046), "held": steps_of()}
     states = {"free": touching_states(0.07), "held": touching_states(0.03)}
     figure = contact_figure("d", analyses, states, 28.57)
     curve = figure.axes[0]
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in curve.lines}
     assert set(lines["first contact, free: 28.57 kPa"]) == {28.57}
-    assert "walls touch below 0.04 mm" in lines
+    assert "walls touch below 0.06 mm" in lines
     np.testing.assert_array_equal(lines["held"], STEPS)
     assert {"free, 30 kPa: no contact", "held, 30 kPa: 200 mm² in contact"} <= set(labels(figure))
     low, high = curve.get_ylim()
@@ -196,10 +196,10 @@ def test_contact_shows_gaps_and_the_first_touch():
 
 @pytest.mark.parametrize(
     ("closing", "gap", "told"),
-    [(0.0054, 0.03, "200 mm²"), (0.0054, 0.5, "less than 1 mm²"), (0.0053, 0.03, "no")],
+    [(0.0047, 0.03, "200 mm²"), (0.0047, 0.5, "less than 1 mm²"), (0.0046, 0.03, "no")],
 )
 def test_the_picture_says_of_contact_what_the_gap_of_its_state_says(closing, gap, told):
-    """Walls touch at 0.2 - 0.0054 · 30 = 0.038 mm, and not at 0.2 - 0.0053 · 30 = 0.041 mm."""
+    """Walls touch at 0.2 - 0.0047 · 30 = 0.059 mm, and not at 0.2 - 0.0046 · 30 = 0.062 mm."""
     figure = contact_figure(
         "d", {"free": steps_of(closing=closing)}, {"free": touching_states(gap)}, None
     )
@@ -342,8 +342,8 @@ def test_a_design_is_told_by_what_its_records_say(tmp_path):
 @pytest.mark.parametrize(
     ("closing", "words"),
     [
-        (0.0053, "No walls touched in free actuation. "),
-        (0.0054, "In free actuation walls touch, and overlap by at most 0.010 mm, 5.0 % of the"),
+        (0.0046, "No walls touched in free actuation. "),
+        (0.0047, "In free actuation walls touch, and overlap by at most 0.010 mm, 5.0 % of the"),
     ],
 )
 def test_walls_touched_if_the_gap_of_a_step_was_below_the_width_of_the_law(
@@ -374,7 +374,7 @@ def test_the_page_says_of_contact_what_the_records_say(tmp_path):
     deeper = {"deepest_penetration_mm": 0.002, "penetration_share": 0.08}
     write_record(solve_record("b", **deeper), on[1] / "solve")
     together = contact_note(read_entries([*on, off[0]]))
-    assert "touch where the gap between them is below 0.04 mm" in together
+    assert "touch where the gap between them is below 0.06 mm" in together
     assert "acts at: by at most 0.002 mm, 8.0 % of the gap." in together
     assert together.endswith("Contact was off for 1 design: walls that balloon may overlap there.")
     assert "off" not in contact_note(read_entries(on))

@@ -121,8 +121,8 @@ def _expected(material: Elastomer, law: ContactLaw) -> tuple[float, float]:
 def narrow_row() -> list[Figure]:
     """Three chambers 1 mm apart at 50 kPa, free and with the tip held: how exactly walls touch.
 
-    The pressure of the contact law begins at a gap of 0.04 mm, so that walls stand off, at its
-    fringe by 4 % of the initial gap here, before they penetrate. What this give matters: the
+    The pressure of the contact law begins at a gap of 0.06 mm, so that walls stand off, at its
+    fringe by 6 % of the initial gap here, before they penetrate. What this give matters: the
     deepest penetration on the way; the distance where walls press hardest; and how a law with a
     third of the width and three times the stiffness changes the bending angle and the blocked
     force. With contact too the actuator stores the work of its pressure.
