@@ -87,7 +87,7 @@ def _on_edge(body: Body) -> tuple[Assembly, Force]:
     assembly = Assembly(body.terms, body.size, fixed)
 
     def force(state: State) -> float:
-        return body.copies * float(assembly.linearize(state)[1][held].sum())
+        return body.copies * float(assembly.residual_near(state)[1][held].sum())
 
     return assembly, force
 
@@ -106,7 +106,7 @@ def _on_plate(body: Body, actuation: Actuation) -> tuple[Assembly, Force]:
     def force(state: State) -> float:
         # By balance with the clamp, since pressure has no resultant: the penalty is so stiff that
         # its own force would show the last thousandth of a millimetre.
-        reaction = float(assembly.linearize(state)[1][clamp].sum())
+        reaction = float(assembly.residual_near(state)[1][clamp].sum())
         return -body.copies * (reaction + weight)
 
     return assembly, force

@@ -15,6 +15,7 @@ from pagd.errors import Status
 from pagd.fem.assembly import State
 from pagd.fem.clock import Clock
 from pagd.fem.continuation import Step
+from pagd.fem.dense_output import lagrange_factors
 from pagd.fem.fields import share_beyond, strains
 
 FloatArray = NDArray[np.float64]
@@ -68,6 +69,7 @@ class Recorder:
     _rows: list[tuple[float, ...]] = field(default_factory=list)
     _recorded: list[int] = field(default_factory=list)
     _last: State | None = None
+    _forces: dict[float, float] = field(default_factory=dict)
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
@@ -80,7 +82,7 @@ class Recorder:
         energy = self._energy(state)
         gap = body.contact.smallest_gap if body.contact else math.inf
         volume = body.volume(state.unknowns)
-        force = self.force(state) if self.force else math.nan
+        force = self._force_of(step)
         self._rows.append((pressure, volume, energy, step.iterations, gap, force))
         if step.wanted or self._has_grown():
             self.record_last()
@@ -125,6 +127,24 @@ class Recorder:
         recorded = np.zeros(len(self._rows), np.bool_)
         recorded[self._recorded] = True
         return columns | {"recorded": recorded}
+
+    def _force_of(self, step: Step) -> float:
+        """The force on what holds the tip, interpolated where the state is."""
+        if self.force is None:
+            return math.nan
+        if not step.among:
+            return self._force_at(step.state)
+        factors = lagrange_factors([state.load for state in step.among], step.state.load)
+        forces = [self._force_at(state) for state in step.among]
+        return sum(f * force for f, force in zip(factors, forces, strict=True))
+
+    def _force_at(self, state: State) -> float:
+        """The force at a converged state, evaluated once for each load."""
+        if self.force is None:
+            return math.nan
+        if state.load not in self._forces:
+            self._forces[state.load] = self.force(state)
+        return self._forces[state.load]
 
     def _energy(self, state: State) -> float:
         """All that the work of the pressure has become, in mJ; contact looks at the state."""

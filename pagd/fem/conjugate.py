@@ -19,10 +19,10 @@ from pagd.fem.continuation import (
     Step,
     StepControl,
     failed,
-    interpolate,
     longer,
     tried,
 )
+from pagd.fem.dense_output import interpolate
 from pagd.fem.newton import Newton, NewtonResult
 from pagd.fem.term import LoadTerm
 

@@ -1,4 +1,4 @@
-"""Following the equilibrium path under rising load, landing on given loads."""
+"""Following the equilibrium path under rising load, with states at given loads."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import State
+from pagd.fem.dense_output import FEWEST, at_load, state_between
 from pagd.fem.newton import Newton, NewtonResult
 
 FloatArray = NDArray[np.float64]
@@ -40,6 +41,9 @@ class StepControl:
         guess is made of three states or more: something new has begun, such as a contact.
     patience
         Tries on end that may fail to converge, however large the step is.
+    dense
+        Whether steps may pass over wanted loads where nothing touches; the states there are
+        interpolated (see :mod:`pagd.fem.dense_output`), or solved for where that is too rough.
     """
 
     first: float = 2.5e-4
@@ -51,6 +55,7 @@ class StepControl:
     order: int = 4
     trust: float = 4.0
     patience: int = 20
+    dense: bool = False
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that converged from a guess through ``states`` states."""
@@ -82,6 +87,8 @@ class Step:
     iterations: int
     wanted: bool
     """Whether the load is one of those asked for."""
+    among: tuple[State, ...] = ()
+    """The converged states that this one is interpolated among, if it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,26 +118,6 @@ Observer = Callable[[Step], str | None]
 Boundary = Callable[[float, FloatArray], None]
 
 
-def extrapolate(states: Sequence[State], load: float) -> State:
-    """The Lagrange polynomial through ``states`` at ``load``, internal variables included."""
-    return replace(interpolate(states, [s.load for s in states], load), load=load)
-
-
-def interpolate(states: Sequence[State], places: Sequence[float], place: float) -> State:
-    """The Lagrange polynomial through ``states`` at ``places``, the load included."""
-    factors = [
-        math.prod((place - b) / (a - b) for j, b in enumerate(places) if j != i)
-        for i, a in enumerate(places)
-    ]
-    load = sum(f * s.load for f, s in zip(factors, states, strict=True))
-    unknowns = sum((f * s.unknowns for f, s in zip(factors, states, strict=True)), np.zeros(1))
-    internal = tuple(
-        np.asarray(sum(f * s.internal[k] for f, s in zip(factors, states, strict=True)))
-        for k in range(len(states[0].internal))
-    )
-    return State(load, unknowns, internal)
-
-
 def tried(path: LoadPath, result: NewtonResult) -> LoadPath:
     """A path after the work of one more try, whatever came of it."""
     return replace(
@@ -153,7 +140,7 @@ def longer(path: LoadPath, load: float, result: NewtonResult) -> LoadPath:
 
 
 class Continuation:
-    """Steps along the path; every converged step goes to the observer.
+    """Steps along the path; every state goes to the observer.
 
     Parameters
     ----------
@@ -182,45 +169,82 @@ class Continuation:
         From ``start``, an equilibrium, or from rest. ``observe`` gets every converged step and may
         return a reason to stop. A step to an unstable equilibrium counts as one that failed.
         """
-        control = self._control
+        control, wanted = self._control, list(loads)
         path = LoadPath(0.0, 0, 0, 0)
-        states = self.states = [start or self._newton.assembly.at_rest()]
+        self.states = [start or self._newton.assembly.at_rest()]
         step, rejections = control.first, 0
-        for target in loads:
-            while states[-1].load < target:
-                load = _next_load(states[-1].load, target, step)
-                taken, known = load - states[-1].load, len(states)
-                # A guess half-way back would not have the values that are prescribed at its load.
-                before = None if self._boundary else states[-1]
-                guess, trust = self._guess(states, load), control.largest_first(known)
-                result = self._newton.solve(guess, before=before, largest_first=trust)
-                correction = result.corrections[0] if result.corrections else math.inf
-                path = tried(path, result)
-                if result.state is None or result.is_unstable:
-                    step, rejections = control.retry_step(taken, correction, known), rejections + 1
-                    path = failed(path, result)
-                    if step < control.smallest or rejections > control.patience:
-                        return replace(path, failure=result.reason or UNSTABLE)
-                    continue
-                states = self.states = [*states, result.state][-control.order - 1 :]
-                path, rejections = longer(path, load, result), 0
-                stop = observe(Step(result.state, result.iterations, load == target))
-                if stop:
-                    return replace(path, stopped=stop)
-                # A step shortened only to land on a wanted load does not shorten the next.
-                following = control.next_step(taken, correction, known)
-                step = max(step, following) if following > taken else following
+        while wanted:
+            known, before = len(self.states), self.states[-1]
+            load = self._next_load(wanted, step)
+            result = self._try(load)
+            correction = result.corrections[0] if result.corrections else math.inf
+            path = tried(path, result)
+            if result.state is not None and not result.is_unstable:
+                path, state = self._pass_over(result.state, wanted, observe, path)
+            else:
+                path, state = failed(path, result), None
+            if path.stopped:
+                return path
+            taken = load - before.load
+            if state is None:
+                step, rejections = control.retry_step(taken, correction, known), rejections + 1
+                if step < control.smallest or rejections > control.patience:
+                    return replace(path, failure=result.reason or UNSTABLE)
+                continue
+            path, rejections = longer(path, load, result), 0
+            lands = bool(load == wanted[0])
+            stop = observe(Step(state, result.iterations, lands))
+            if stop:
+                return replace(path, stopped=stop)
+            del wanted[:lands]
+            # A step shortened only to land on a wanted load does not shorten the next.
+            following = control.next_step(taken, correction, known)
+            step = max(step, following) if following > taken else following
         return path
 
-    def _guess(self, states: Sequence[State], load: float) -> State:
-        guess = extrapolate(states, load)
+    def _next_load(self, wanted: Sequence[float], step: float) -> float:
+        """The load after a step; the way to a load to land on is divided evenly."""
+        passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
+        passes = passes and not any(self._newton.assembly.touching)
+        load, target = self.states[-1].load, wanted[-1 if passes else 0]
+        parts = math.ceil((target - load) / step - 1e-9)
+        reached = load + (target - load) / max(parts, 1)
+        return next((w for w in wanted if math.isclose(w, reached)), reached)
+
+    def _try(self, load: float) -> NewtonResult:
+        # A guess half-way back would not have the values that are prescribed at its load.
+        before = None if self._boundary else self.states[-1]
+        trust = self._control.largest_first(len(self.states))
+        return self._newton.solve(self._guess(load), before=before, largest_first=trust)
+
+    def _pass_over(
+        self, reached: State, wanted: list[float], observe: Observer, path: LoadPath
+    ) -> tuple[LoadPath, State | None]:
+        """Observe the states at wanted loads on the way, taken off the list.
+
+        Returns the path and the reached state, none where no state at a wanted load was found.
+        """
+        states = [*self.states, reached]
+        while wanted[0] < reached.load:
+            state, among, iterations = state_between(self._newton, states, wanted[0]), states, 0
+            if state is None:
+                result = self._newton.solve(at_load(states, wanted[0]), before=states[-2])
+                path, among, iterations = tried(path, result), [], result.iterations
+                if result.state is None or result.is_unstable:
+                    self.states = states[:-1][-self._control.order - 1 :]
+                    return failed(path, result), None
+                path, state = longer(path, wanted[0], result), result.state
+                states.insert(-1, state)
+            path = replace(path, load=wanted[0])
+            stop = observe(Step(state, iterations, True, tuple(among)))
+            del wanted[0]
+            if stop:
+                return replace(path, stopped=stop), None
+        self.states = states[-self._control.order - 1 :]
+        return path, reached
+
+    def _guess(self, load: float) -> State:
+        guess = at_load(self.states, load)
         if self._boundary:
             self._boundary(load, guess.unknowns)
         return guess
-
-
-def _next_load(load: float, target: float, step: float) -> float:
-    """The load after a step; the way to the target is divided evenly."""
-    remaining = target - load
-    parts = math.ceil(remaining / step - 1e-9)
-    return target if parts <= 1 else load + remaining / parts

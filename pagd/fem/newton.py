@@ -200,7 +200,7 @@ class Newton:
             except SingularMatrixError as error:
                 return NewtonResult(None, len(full), tuple(corrections), str(error))
             correction, load, falls = self._with_load(state, self._solution, conjugate)
-            size = self._largest(correction)
+            size = self.largest_displacement(correction)
             full.append(size)
             corrections.append(size)
             largest = settings.largest_correction if len(full) > 1 else largest_first
@@ -226,8 +226,8 @@ class Newton:
         reason = "corrections in mm: " + ", ".join(f"{c:.1e}" for c in corrections)
         return NewtonResult(None, len(full), tuple(corrections), reason)
 
-    def _largest(self, correction: FloatArray) -> float:
-        """The largest correction of a displacement, in mm."""
+    def largest_displacement(self, correction: FloatArray) -> float:
+        """The largest displacement of a correction (size,) of the unknowns, in mm."""
         return float(np.abs(correction[: self._displacements]).max())
 
     def _settle(
@@ -248,7 +248,7 @@ class Newton:
             is_alike = self.assembly.touching == touching
             solution = self._full(self.solver.solve_again(-residual[self.assembly.free]))
             correction, load, _ = self._with_load(state, solution, conjugate)
-            size = self._largest(correction)
+            size = self.largest_displacement(correction)
             if not size <= self.settings.contraction * corrections[-1]:
                 break
             state = _loaded(self.assembly.advance(state, correction), load)

@@ -22,7 +22,12 @@ HISTORY = (
         "stored_energy_mJ", "double", "mJ", "energy since zero pressure: elastic, contact, gravity"
     ),
     Column("work_mJ", "double", "mJ", "work of the pressure so far, ∫p dV"),
-    Column("newton_iterations", "int32", "1", "Newton iterations of the step"),
+    Column(
+        "newton_iterations",
+        "int32",
+        "1",
+        "Newton iterations of the step; 0: interpolated",
+    ),
     Column("recorded", "bool", "", "whether the state is recorded, in their order"),
     Column("smallest_gap_mm", "double", "mm", "gap between chambers, negative: overlap; null: far"),
 )

@@ -102,7 +102,8 @@ def test_figures(result: ActuationResult) -> None:
     assert figures["unknowns"] == 3 * len(mesh.points) + corners - held
     assert figures["pressure_kPa"] == 12.0
     assert figures["solid_volume_mm3"] == pytest.approx(12 * 6 * 6 - 6 * 3 * 2)
-    assert figures["steps"] == len(result.history["pressure_kPa"]) - 1
+    # States at rest and interpolated ones are no steps.
+    assert figures["steps"] == (result.history["newton_iterations"] > 0).sum()
     # Iterations of tries that failed count too.
     assert figures["newton_iterations"] >= result.history["newton_iterations"].sum() > 0
 

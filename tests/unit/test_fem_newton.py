@@ -11,7 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import Assembly, State
-from pagd.fem.continuation import Continuation, Step, StepControl, extrapolate
+from pagd.fem.continuation import Continuation, Step, StepControl
+from pagd.fem.dense_output import at_load
 from pagd.fem.linear_solver import SingularMatrixError, SuperLUSolver
 from pagd.fem.newton import Newton, NewtonResult, NewtonSettings
 from pagd.fem.term import NO_INTERNAL, ElementSystem
@@ -390,7 +391,7 @@ def test_extrapolation_is_exact_for_polynomials() -> None:
     def state(load: float) -> State:
         return State(load, np.array([load**2 - load, 3.0]), (np.array([2 * load**2]), NO_INTERNAL))
 
-    guess = extrapolate([state(0.1), state(0.25), state(0.3)], 0.5)
+    guess = at_load([state(0.1), state(0.25), state(0.3)], 0.5)
     assert guess.load == 0.5
     np.testing.assert_allclose(guess.unknowns, [-0.25, 3.0], atol=1e-13)
     np.testing.assert_allclose(guess.internal[0], [0.5], atol=1e-13)

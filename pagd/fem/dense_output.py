@@ -1,0 +1,66 @@
+"""States between the steps of a path, by polynomials through states of equilibrium.
+
+Dense output, as of solvers of differential equations (Hairer, Nørsett, Wanner, *Solving Ordinary
+Differential Equations I*, Springer 1993, section II.6): where the path is smooth, its steps are
+longer than the distances between the loads at which states are wanted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.fem.assembly import State
+from pagd.fem.newton import Newton
+
+FloatArray = NDArray[np.float64]
+
+#: Fewer states tell nothing of the error.
+FEWEST = 4
+
+
+def lagrange_factors(places: Sequence[float], place: float) -> list[float]:
+    """Values at ``place`` of the Lagrange polynomials of ``places``."""
+    return [
+        math.prod((place - b) / (a - b) for j, b in enumerate(places) if j != i)
+        for i, a in enumerate(places)
+    ]
+
+
+def interpolate(states: Sequence[State], places: Sequence[float], place: float) -> State:
+    """The Lagrange polynomial through ``states`` at ``places``, the load included."""
+    factors = lagrange_factors(places, place)
+    load = sum(f * s.load for f, s in zip(factors, states, strict=True))
+    unknowns = sum((f * s.unknowns for f, s in zip(factors, states, strict=True)), np.zeros(1))
+    internal = tuple(
+        np.asarray(sum(f * s.internal[k] for f, s in zip(factors, states, strict=True)))
+        for k in range(len(states[0].internal))
+    )
+    return State(load, unknowns, internal)
+
+
+def at_load(states: Sequence[State], load: float) -> State:
+    """The Lagrange polynomial through ``states`` at ``load``, internal variables included."""
+    return replace(interpolate(states, [s.load for s in states], load), load=load)
+
+
+def state_between(newton: Newton, states: Sequence[State], load: float) -> State | None:
+    """The state at a load between the last two of ``states``, if it is known well enough.
+
+    It is where the polynomial through all of them and the one without the first differ by less
+    than the tolerance of the displacements; the difference is the error of the latter, that of
+    the former, which is returned, is smaller. Not where anything touches: contact begins with a
+    kink.
+    """
+    if len(states) < FEWEST:
+        return None
+    found, coarser = at_load(states, load), at_load(states[1:], load)
+    difference = newton.largest_displacement(found.unknowns - coarser.unknowns)
+    if not difference < newton.settings.tolerance:
+        return None
+    newton.assembly.look_around(found)
+    return None if any(newton.assembly.touching) else found

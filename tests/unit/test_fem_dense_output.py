@@ -1,0 +1,137 @@
+"""States between steps: interpolated where that is good enough, solved for where it is not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from test_fem_newton import Spring, newton
+
+from pagd.fem.assembly import State
+from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
+from pagd.fem.dense_output import lagrange_factors, state_between
+from pagd.fem.newton import Newton, NewtonResult
+
+TOLERANCE = 1e-4
+WANTED = [2.0, 4.0, 6.0, 8.0, 10.0]
+
+
+def state(load: float, power: int) -> State:
+    return State(load, np.array([(load / 10) ** power]), ())
+
+
+def loose(spring: Spring) -> Newton:
+    return newton(spring, tolerance=TOLERANCE, iterations=20)
+
+
+@dataclass
+class Jumpy:
+    """A spring whose solution cannot be found at one load unless the guess is near."""
+
+    method: Newton
+    avoided: float
+    tried: list[float] = field(default_factory=list)
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.method, name)
+
+    def solve(self, guess: State, **given: object) -> NewtonResult:
+        self.tried.append(guess.load)
+        if guess.load == self.avoided and self.tried.count(guess.load) == 1:
+            return NewtonResult(None, 3, (1.0,), "avoided")
+        return self.method.solve(guess, **given)  # type: ignore[arg-type]
+
+
+def follow(method: object, **control: float | bool) -> tuple[list[Step], LoadPath]:
+    steps: list[Step] = []
+    settings = StepControl(first=0.5, wanted_correction=0.3, dense=True, **control)  # type: ignore[arg-type]
+    path = Continuation(method, settings).follow(WANTED, steps.append)  # type: ignore[arg-type]
+    return steps, path
+
+
+def solved(load: float) -> float:
+    roots = np.roots([1.0, 0.0, 1.0, -load])
+    return float(roots[np.abs(roots.imag) < 1e-9].real[0])
+
+
+def test_a_polynomial_of_low_degree_is_met() -> None:
+    states = [state(load, 2) for load in (0.0, 1.0, 3.0, 4.0, 8.0)]
+    found = state_between(loose(Spring()), states, 6.0)
+    assert found is not None
+    assert found.load == 6.0
+    np.testing.assert_allclose(found.unknowns, 0.36, rtol=1e-12)
+
+
+def test_a_state_that_is_not_known_well_enough_is_none() -> None:
+    """Of a polynomial of degree 4 the one of degree 3 knows too little."""
+    states = [state(load, 4) for load in (0.0, 1.0, 3.0, 4.0, 8.0)]
+    assert state_between(loose(Spring()), states, 6.0) is None
+    assert state_between(loose(Spring()), states[:3], 2.0) is None
+
+
+def test_factors_are_one_at_their_place_and_zero_at_the_others() -> None:
+    assert lagrange_factors([1.0, 2.0, 5.0], 2.0) == [0.0, 1.0, 0.0]
+    assert sum(lagrange_factors([1.0, 2.0, 5.0], 3.3)) == pytest.approx(1.0)
+
+
+def test_steps_pass_over_wanted_loads() -> None:
+    steps, path = follow(loose(Spring(stiffening=1.0)), growth=5.0)
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    between = [step for step in steps if step.among]
+    assert between
+    for step in steps:
+        tolerance = TOLERANCE if step.among else 1e-6
+        assert step.state.unknowns[0] == pytest.approx(solved(step.state.load), abs=tolerance)
+        assert (step.iterations == 0) == bool(step.among)
+    assert path.load == WANTED[-1]
+    assert path.steps == len(steps) - len(between)
+    loads = [step.state.load for step in steps]
+    assert loads == sorted(set(loads))
+
+
+def test_with_prescribed_unknowns_every_wanted_load_is_solved_for() -> None:
+    steps: list[Step] = []
+
+    def boundary(load: float, unknowns: np.ndarray) -> None:
+        unknowns[0] = 0.0
+
+    control = StepControl(first=0.5, wanted_correction=10.0, dense=True)
+    method = loose(Spring(stiffening=1.0))
+    Continuation(method, control, boundary).follow(WANTED, steps.append)
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    assert not any(step.among for step in steps)
+
+
+def test_what_is_not_known_well_enough_is_solved_for() -> None:
+    exact = newton(Spring(stiffening=1.0), tolerance=1e-12, iterations=20)
+    steps, _ = follow(exact, growth=5.0)
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    assert not any(step.among for step in steps)
+
+
+def test_where_no_state_between_is_found_the_step_is_shorter() -> None:
+    """The state at 4 is looked for behind a step that has passed over it, and then landed on."""
+    exact = newton(Spring(stiffening=1.0), tolerance=1e-12, iterations=20)
+    plain, _ = follow(exact, growth=5.0)
+    avoided = next(s.state.load for s in plain if s.wanted)
+    jumpy = Jumpy(exact, avoided)
+    steps, path = follow(jumpy, growth=5.0)
+    assert path.rejected == 1
+    assert jumpy.tried.count(avoided) == 2
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    loads = [step.state.load for step in steps]
+    assert loads == sorted(set(loads))
+
+
+def test_the_observer_can_stop_at_a_state_between() -> None:
+    seen: list[float] = []
+
+    def observe(step: Step) -> str | None:
+        seen.append(step.state.load)
+        return "enough" if step.among else None
+
+    control = StepControl(first=0.5, wanted_correction=0.3, dense=True, growth=5.0)
+    path = Continuation(loose(Spring(stiffening=1.0)), control).follow(WANTED, observe)
+    assert path.stopped == "enough"
+    assert path.load == seen[-1] in WANTED
