@@ -216,9 +216,9 @@ class FaceContact:
         return self.linearize(unknowns, BY_LAW, load, self._room())
 
     def _room(self) -> ElementSystem:
-        """A system for what is not assembled."""
+        """Room for residuals without tangents."""
         if len(self._scratch.residual) != len(self.dofs):
-            self._scratch = ElementSystem.of(self.dofs)
+            self._scratch = ElementSystem(np.zeros(self.dofs.shape), np.zeros((0, 666)))
         return self._scratch
 
     @property

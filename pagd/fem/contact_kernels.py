@@ -319,8 +319,14 @@ def gap_derivatives(
 
 
 @compiled
-def add_gap(
-    slope: float,
+def add_force(slope: float, normal: FloatArray, weights: FloatArray, residual: FloatArray) -> None:
+    """Add slope ∇g to the residual (36,)."""
+    for i in range(36):
+        residual[i] += slope * weights[i // 3] * normal[i % 3]
+
+
+@compiled
+def add_stiffness(
     curvature: float,
     shown: float,
     gap: float,
@@ -329,18 +335,13 @@ def add_gap(
     along: FloatArray,
     turning: FloatArray,
     coefficients: FloatArray,
-    residual: FloatArray,
     tangent: FloatArray,
 ) -> None:
-    """Add slope ∇g to the residual (36,), and its derivative to the packed tangent (666,).
-
-    ``shown`` is what ∇²g is multiplied by, the slope or a part of it.
-    """
+    """Add curvature ∇g ∇g + shown ∇²g to the packed tangent (666,)."""
     bent, inverse = coefficients[0], coefficients[1]
     left, right, entry = np.empty(2), np.empty(2), 0
     for i in range(36):
         gi = weights[i // 3] * normal[i % 3]
-        residual[i] += slope * gi
         for b in range(2):
             # Rows of c A⁻¹ κ m⁻¹ + b A⁻¹, against c; and of c A⁻¹ + g b A⁻¹, against b.
             left[b] = bent[0, b] * along[0, i] + bent[1, b] * along[1, i]

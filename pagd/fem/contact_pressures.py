@@ -26,7 +26,7 @@ from numba import prange
 from numpy.typing import NDArray
 
 from pagd.fem.compiled import compiled, compiled_parallel
-from pagd.fem.contact_kernels import add_gap, gap_derivatives, pressure_law
+from pagd.fem.contact_kernels import add_force, add_stiffness, gap_derivatives, pressure_law
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -112,6 +112,8 @@ def linearize_contact(
 ) -> None:
     """Residuals (P, 36) and packed tangents (P, 666) of the pairs; energies (S,) by slave face.
 
+    No tangents where there is no room for them, (0, 666).
+
     ``areas`` (S, Q) are the undeformed areas of the quadrature points and ``pairs`` the pair of
     each candidate, or −1. Also fills the pressures p′ (S, Q) from those iterated (S, Q), or
     ``by_law`` from the gaps alone, and the slopes k (S, Q), kept where known if ``keeps_slopes``.
@@ -150,8 +152,11 @@ def linearize_contact(
                 coefficients,
                 work,
             )
-            add_gap(
-                -areas[e, q] * pressures[e, q],
+            force = -areas[e, q] * pressures[e, q]
+            add_force(force, normal, weights, residual[pairs[c]])
+            if len(tangent) == 0:
+                continue
+            add_stiffness(
                 areas[e, q] * slopes[e, q],
                 -areas[e, q] * min(pressures[e, q], turning_by),
                 gap,
@@ -160,7 +165,6 @@ def linearize_contact(
                 along,
                 turning,
                 coefficients,
-                residual[pairs[c]],
                 tangent[pairs[c]],
             )
 
