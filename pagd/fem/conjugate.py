@@ -79,7 +79,7 @@ class ConjugatePath:
         path = replace(path, failure="", is_unstable=False)
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
         step = first = points[-1].conjugate - points[-2].conjugate
-        end = path.steps + self._most_steps
+        end, rejections = path.steps + self._most_steps, 0
         while wanted:
             if path.steps >= end:
                 reason = f"{self._most_steps} steps were not enough"
@@ -89,7 +89,8 @@ class ConjugatePath:
             correction = result.corrections[0] if result.corrections else math.inf
             path = tried(path, result)
             if result.state is None or result.is_unstable:
-                step = control.retry_step(taken, correction, count)
+                rejections += 1
+                step = control.retry_step(taken, correction, count, rejections)
                 path = failed(path, result)
                 if step < self._smallest * first:
                     return replace(path, failure=result.reason or UNSTABLE)
@@ -98,7 +99,7 @@ class ConjugatePath:
             path = self._land_between(points[-1], point, wanted, observe, path)
             if path.failure or path.stopped or not wanted:
                 return path
-            points = [*points, point][-control.order - 1 :]
+            points, rejections = [*points, point][-control.order - 1 :], 0
             reached = Step(result.state, result.iterations, False)
             path = longer(path, result.state.load, result)
             stop = observe(reached)

@@ -32,8 +32,8 @@ class StepControl:
         Largest first correction of a node, in mm, that a step is chosen for.
     growth, cut
         Largest factor from one step to the next, and the smallest.
-    retry
-        Largest factor after a try that did not converge.
+    retry, retry_again
+        Largest factor after a try that did not converge, and after more than one on end.
     order
         Degree of the polynomial.
     trust
@@ -52,6 +52,7 @@ class StepControl:
     growth: float = 3.0
     cut: float = 0.25
     retry: float = 0.6
+    retry_again: float = 0.3
     order: int = 4
     trust: float = 4.0
     patience: int = 20
@@ -61,9 +62,12 @@ class StepControl:
         """The step after one that converged from a guess through ``states`` states."""
         return max(taken * self.factor(first_correction, states), self.smallest)
 
-    def retry_step(self, taken: float, first_correction: float, states: int) -> float:
-        """The step after one that did not converge."""
-        return taken * min(max(self._factor(first_correction, states), self.cut), self.retry)
+    def retry_step(
+        self, taken: float, first_correction: float, states: int, rejections: int
+    ) -> float:
+        """The step after one that did not converge, the last of so many ``rejections`` on end."""
+        largest = self.retry if rejections <= 1 else self.retry_again
+        return taken * min(max(self._factor(first_correction, states), self.cut), largest)
 
     def factor(self, first_correction: float, states: int) -> float:
         """Factor from a step that converged to the next one, within the limits."""
@@ -187,9 +191,11 @@ class Continuation:
                 return path
             taken = load - before.load
             if state is None:
-                step, rejections = control.retry_step(taken, correction, known), rejections + 1
+                rejections += 1
+                step = control.retry_step(taken, correction, known, rejections)
                 if step < control.smallest or rejections > control.patience:
-                    return replace(path, failure=result.reason or UNSTABLE)
+                    return replace(path, failure=path.failure or result.reason or UNSTABLE)
+                path = replace(path, failure="")
                 continue
             path, rejections = longer(path, load, result), 0
             lands = bool(load == wanted[0])
@@ -205,11 +211,15 @@ class Continuation:
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
         """The load after a step; the way to a load to land on is divided evenly."""
         passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
-        passes = passes and not any(self._newton.assembly.touching)
-        load, target = self.states[-1].load, wanted[-1 if passes else 0]
+        if passes and not any(self._newton.assembly.touching):
+            load = self._step_towards(wanted[-1], step)
+            return next((w for w in wanted if math.isclose(w, load)), load)
+        return self._step_towards(wanted[0], step)
+
+    def _step_towards(self, target: float, step: float) -> float:
+        load = self.states[-1].load
         parts = math.ceil((target - load) / step - 1e-9)
-        reached = load + (target - load) / max(parts, 1)
-        return next((w for w in wanted if math.isclose(w, reached)), reached)
+        return target if parts <= 1 else load + (target - load) / parts
 
     def _try(self, load: float) -> NewtonResult:
         # A guess half-way back would not have the values that are prescribed at its load.
@@ -222,7 +232,8 @@ class Continuation:
     ) -> tuple[LoadPath, State | None]:
         """Observe the states at wanted loads on the way, taken off the list.
 
-        Returns the path and the reached state, none where no state at a wanted load was found.
+        Returns the path and the reached state, none where no state at a wanted load was found; the
+        path then has the reason as its ``failure``.
         """
         states = [*self.states, reached]
         while wanted[0] < reached.load:
@@ -232,7 +243,7 @@ class Continuation:
                 path, among, iterations = tried(path, result), [], result.iterations
                 if result.state is None or result.is_unstable:
                     self.states = states[:-1][-self._control.order - 1 :]
-                    return failed(path, result), None
+                    return replace(failed(path, result), failure=result.reason or UNSTABLE), None
                 path, state = longer(path, wanted[0], result), result.state
                 states.insert(-1, state)
             path = replace(path, load=wanted[0])

@@ -36,7 +36,7 @@ FloatArray = NDArray[np.float64]
 Linearised = tuple[float, FloatArray, FloatArray]
 
 # So many corrections on end, after as many, show whether an iteration comes nearer.
-_TO_AND_FRO = 4
+_TO_AND_FRO = 3
 
 # Corrections with old factors do not shrink quadratically: they end below this share of the
 # tolerance, so that the error left is below the tolerance as well.
@@ -141,6 +141,7 @@ class Newton:
         self._solution = self._by_load = np.zeros(0)
         # So many solves to come without iterated stresses, and after the next failure.
         self._plain_solves, self._back_off = 0, 1
+        self._has_failed = False
         self._analyse()
 
     def _analyse(self) -> None:
@@ -158,8 +159,9 @@ class Newton:
 
         At the load of the guess, or at the given value of its ``conjugate``. Given up at once where
         the first correction of a node is larger than ``largest_first``, in mm. From the state
-        ``before`` the guess can be shortened. What fails with stresses that are iterated is tried
-        with those of the displacements; where they do better, it stays so for a while.
+        ``before`` the guess can be shortened. What fails with stresses that are iterated (where
+        anything touches, twice on end) is tried with those of the displacements; where they do
+        better, it stays so for a while.
         """
         self._plain_solves -= 1
         if self._plain_solves >= 0:
@@ -167,9 +169,13 @@ class Newton:
             return self._solve(guess, conjugate, before, largest_first)
         self.assembly.iterates_stresses = True
         result = self._solve(guess, conjugate, before, largest_first)
-        works = result.state is not None and not result.is_unstable
+        works, failed = result.state is not None and not result.is_unstable, self._has_failed
+        self._has_failed = not works
         if works or result.iterations < 2 or not self.assembly.iterates_stresses:
             self._back_off = 1
+            return result
+        if any(self.assembly.touching) and not failed:
+            # A shorter step is all that new contact takes, most often.
             return result
         # Far from the solution, where walls meet or the material stiffens much, a stress along
         # the tangent can be one that no state has: it spoils the iteration, and the signs of the
@@ -177,6 +183,7 @@ class Newton:
         self.assembly.iterates_stresses = False
         again = self._solve(guess, conjugate, before, largest_first)
         if again.state is not None and not again.is_unstable:
+            self._has_failed = False
             self._plain_solves, self._back_off = self._back_off, 2 * self._back_off
         return replace(
             again,

@@ -228,6 +228,15 @@ def test_where_iterated_stresses_fail_those_of_the_displacements_are_tried() -> 
     assert method.solve(at(0.7)).iterations > 1
 
 
+def test_where_something_touches_a_shorter_step_is_tried_first() -> None:
+    class Touched(Turning):
+        excess, touching = 0.0, 1
+
+    method = newton(Touched())
+    assert method.solve(at(0.7)).state is None
+    assert method.solve(at(0.5)).state is not None
+
+
 def test_an_inadmissible_guess_is_refused() -> None:
     result = newton(Spring(limit=1.0)).solve(at(0.5, 1.5))
     assert (result.state, result.iterations) == (None, 0)
@@ -336,8 +345,11 @@ def test_steps_shrink_while_guesses_are_bad() -> None:
 
 def test_a_try_that_fails_is_repeated_with_a_smaller_step() -> None:
     fake = FakeNewton(largest=0.1, first_correction=1.0)
-    steps, path = follow(fake, [0.4], first=0.4, retry=0.5)
+    steps, path = follow(fake, [0.4], first=0.4, retry=0.5, retry_again=0.5)
     assert [load for load, _ in fake.tries[:3]] == pytest.approx([0.4, 0.2, 0.1])
+    sooner = FakeNewton(largest=0.1, first_correction=1.0)
+    follow(sooner, [0.4], first=0.4, retry=0.5, retry_again=0.25)
+    assert [load for load, _ in sooner.tries[:3]] == pytest.approx([0.4, 0.2, 0.05])
     assert path.rejected >= 2
     assert steps[-1].state.load == 0.4
     assert not path.failure
