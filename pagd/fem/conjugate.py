@@ -22,7 +22,7 @@ from pagd.fem.continuation import (
     longer,
     tried,
 )
-from pagd.fem.dense_output import interpolate
+from pagd.fem.dense_output import interpolate, states_to_use
 from pagd.fem.newton import Newton, NewtonResult
 from pagd.fem.term import LoadTerm
 
@@ -84,8 +84,8 @@ class ConjugatePath:
             if path.steps >= end:
                 reason = f"{self._most_steps} steps were not enough"
                 return replace(path, failure=reason, is_unstable=False)
-            taken, count = step, len(points)
-            result = self._try(points, points[-1].conjugate + step)
+            taken, count = step, self._known(points)
+            result = self._try(points[-count:], points[-1].conjugate + step)
             correction = result.corrections[0] if result.corrections else math.inf
             path = tried(path, result)
             if result.state is None or result.is_unstable:
@@ -99,7 +99,7 @@ class ConjugatePath:
             path = self._land_between(points[-1], point, wanted, observe, path)
             if path.failure or path.stopped or not wanted:
                 return path
-            points, rejections = [*points, point][-control.order - 1 :], 0
+            points, rejections = [*points, point][-control.order - 2 :], 0
             reached = Step(result.state, result.iterations, False)
             path = longer(path, result.state.load, result)
             stop = observe(reached)
@@ -124,6 +124,11 @@ class ConjugatePath:
             if stop:
                 return replace(path, stopped=stop)
         return path
+
+    def _known(self, points: Sequence[_Point]) -> int:
+        """How many of the last points the next guess is made of."""
+        states, places = [p.state for p in points], [p.conjugate for p in points]
+        return states_to_use(self._newton, states, places, self._control.order)
 
     def _try(self, points: Sequence[_Point], conjugate: float) -> NewtonResult:
         places = [point.conjugate for point in points]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import State
-from pagd.fem.dense_output import FEWEST, at_load, state_between
+from pagd.fem.dense_output import FEWEST, at_load, state_between, states_to_use
 from pagd.fem.newton import Newton, NewtonResult
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +35,7 @@ class StepControl:
     retry, retry_again
         Largest factor after a try that did not converge, and after more than one on end.
     order
-        Degree of the polynomial.
+        Highest degree of the polynomial.
     trust
         A first correction beyond so many times the wanted one gives up a try at once, where the
         guess is made of three states or more: something new has begun, such as a contact.
@@ -162,7 +162,7 @@ class Continuation:
         self._newton = newton
         self._control = control or StepControl()
         self._boundary = boundary
-        #: The last states of the path, as many as a first guess is made of.
+        #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
 
     def follow(
@@ -178,9 +178,9 @@ class Continuation:
         self.states = [start or self._newton.assembly.at_rest()]
         step, rejections = control.first, 0
         while wanted:
-            known, before = len(self.states), self.states[-1]
+            known, before = self._known(), self.states[-1]
             load = self._next_load(wanted, step)
-            result = self._try(load)
+            result = self._try(load, known)
             correction = result.corrections[0] if result.corrections else math.inf
             path = tried(path, result)
             if result.state is not None and not result.is_unstable:
@@ -221,11 +221,19 @@ class Continuation:
         parts = math.ceil((target - load) / step - 1e-9)
         return target if parts <= 1 else load + (target - load) / parts
 
-    def _try(self, load: float) -> NewtonResult:
+    def _known(self) -> int:
+        """How many of the last states the next guess is made of."""
+        loads = [state.load for state in self.states]
+        return states_to_use(self._newton, self.states, loads, self._control.order)
+
+    def _try(self, load: float, known: int) -> NewtonResult:
         # A guess half-way back would not have the values that are prescribed at its load.
         before = None if self._boundary else self.states[-1]
-        trust = self._control.largest_first(len(self.states))
-        return self._newton.solve(self._guess(load), before=before, largest_first=trust)
+        trust = self._control.largest_first(known)
+        guess = at_load(self.states[-known:], load)
+        if self._boundary:
+            self._boundary(load, guess.unknowns)
+        return self._newton.solve(guess, before=before, largest_first=trust)
 
     def _pass_over(
         self, reached: State, wanted: list[float], observe: Observer, path: LoadPath
@@ -235,14 +243,15 @@ class Continuation:
         Returns the path and the reached state, none where no state at a wanted load was found; the
         path then has the reason as its ``failure``.
         """
-        states = [*self.states, reached]
+        kept = self._control.order + 2
+        states = [*self.states, reached][-kept:]
         while wanted[0] < reached.load:
             state, among, iterations = state_between(self._newton, states, wanted[0]), states, 0
             if state is None:
                 result = self._newton.solve(at_load(states, wanted[0]), before=states[-2])
                 path, among, iterations = tried(path, result), [], result.iterations
                 if result.state is None or result.is_unstable:
-                    self.states = states[:-1][-self._control.order - 1 :]
+                    self.states = states[:-1][-kept:]
                     return replace(failed(path, result), failure=result.reason or UNSTABLE), None
                 path, state = longer(path, wanted[0], result), result.state
                 states.insert(-1, state)
@@ -251,11 +260,5 @@ class Continuation:
             del wanted[0]
             if stop:
                 return replace(path, stopped=stop), None
-        self.states = states[-self._control.order - 1 :]
+        self.states = states[-kept:]
         return path, reached
-
-    def _guess(self, load: float) -> State:
-        guess = at_load(self.states, load)
-        if self._boundary:
-            self._boundary(load, guess.unknowns)
-        return guess

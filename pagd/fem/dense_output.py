@@ -19,6 +19,9 @@ from pagd.fem.newton import Newton
 
 FloatArray = NDArray[np.float64]
 
+# A polynomial of lower degree is taken where its error is no more than so many times the least.
+_AS_GOOD = 3.0
+
 #: Fewer states tell nothing of the error.
 FEWEST = 4
 
@@ -46,6 +49,29 @@ def interpolate(states: Sequence[State], places: Sequence[float], place: float) 
 def at_load(states: Sequence[State], load: float) -> State:
     """The Lagrange polynomial through ``states`` at ``load``, internal variables included."""
     return replace(interpolate(states, [s.load for s in states], load), load=load)
+
+
+def states_to_use(
+    newton: Newton, states: Sequence[State], places: Sequence[float], order: int
+) -> int:
+    """How many of the last states the next guess is best made of: two to ``order`` + 1.
+
+    As many as would have foretold the last state well at its place, the load or its conjugate, from
+    those before it; one more where that is the most that there were. On a smooth path these are
+    many, but contact comes and goes with kinks, which a polynomial of a high degree amplifies.
+    """
+    most = min(len(states), order + 1)
+    if most < FEWEST:
+        return most
+    last, errors = states[-1], {}
+    for count in range(2, min(most, len(states) - 1) + 1):
+        before = states[-count - 1 : -1]
+        factors = lagrange_factors(places[-count - 1 : -1], places[-1])
+        guess = sum((f * s.unknowns for f, s in zip(factors, before, strict=True)), np.zeros(1))
+        errors[count] = newton.largest_displacement(guess - last.unknowns)
+    enough = _AS_GOOD * min(errors.values())
+    best = next(count for count, error in errors.items() if error <= enough)
+    return min(best + 1, most) if best == max(errors) else best
 
 
 def state_between(newton: Newton, states: Sequence[State], load: float) -> State | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +11,7 @@ from test_fem_newton import Spring, newton
 
 from pagd.fem.assembly import State
 from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
-from pagd.fem.dense_output import lagrange_factors, state_between
+from pagd.fem.dense_output import lagrange_factors, state_between, states_to_use
 from pagd.fem.newton import Newton, NewtonResult
 
 TOLERANCE = 1e-4
@@ -68,6 +69,28 @@ def test_a_state_that_is_not_known_well_enough_is_none() -> None:
     states = [state(load, 4) for load in (0.0, 1.0, 3.0, 4.0, 8.0)]
     assert state_between(loose(Spring()), states, 6.0) is None
     assert state_between(loose(Spring()), states[:3], 2.0) is None
+
+
+def count_of(function: Callable[[float], float], loads: list[float]) -> int:
+    states = [State(load, np.array([function(load)]), ()) for load in loads]
+    return states_to_use(loose(Spring()), states, loads, order=4)
+
+
+def grows(load: float) -> float:
+    return float(np.exp(load / 4))
+
+
+def test_a_guess_is_made_of_as_many_states_as_are_of_use() -> None:
+    loads = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert count_of(lambda load: load, loads) == 2
+    assert count_of(lambda load: load**2, loads) == 3
+    # The most that could be judged by the last state are as good as that: one more is taken.
+    assert count_of(grows, loads) == 5
+    assert count_of(grows, loads[:5]) == 5
+    # Behind a kink what was before it tells nothing.
+    assert count_of(lambda load: max(0.0, load - 2.5), loads) == 2
+    # Of fewer, all.
+    assert [count_of(grows, loads[:known]) for known in (1, 2, 3)] == [1, 2, 3]
 
 
 def test_factors_are_one_at_their_place_and_zero_at_the_others() -> None:

@@ -299,6 +299,9 @@ class FakeNewton:
         self.reached = guess.load
         return NewtonResult(at(guess.load, guess.load), 2, corrections)
 
+    def largest_displacement(self, correction: FloatArray) -> float:
+        return float(np.abs(correction).max())
+
 
 def follow(
     fake: FakeNewton, loads: list[float], **control: float | int
