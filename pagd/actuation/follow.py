@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,8 @@ FloatArray = NDArray[np.float64]
 
 _KPA = 1e-3  # MPa
 
-# Where points come into contact or leave it, corrections need not shrink at once.
+# Where points come into contact or leave it, corrections need not shrink at once, and more of them
+# with the same factors are worth their while.
 _PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0, "contraction": 0.55, "reuses": 8}
 
 # Largest factor from one step to the next: rows of chambers have smooth paths until walls touch.
@@ -94,7 +95,9 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     if not path.failure or len(continuation.states) < 2:
         return _Followed(path)
     left = [pressure for pressure in pressures if pressure > path.load]
-    further = ConjugatePath(newton, control).follow(continuation.states, left, recorder, path)
+    # Limit points are where steps have to be small.
+    slower = replace(control, growth=StepControl().growth, retry_again=control.retry)
+    further = ConjugatePath(newton, slower).follow(continuation.states, left, recorder, path)
     if further.steps == path.steps:
         return _Followed(further)
     return _Followed(further, path.load / _KPA)

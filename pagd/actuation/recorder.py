@@ -26,6 +26,9 @@ OVERSTRETCHED_SHARE = 0.01
 # Growth of the cavity after which a state is recorded whatever its pressure.
 _GROWTH = 1.25
 
+# As many forces are kept as states may be interpolated among.
+_FORCES = 12
+
 _KPA = 1e-3  # MPa
 
 #: The force in N on what holds the tip, at a converged state.
@@ -43,7 +46,7 @@ _COLUMNS = (
 
 @dataclass(slots=True)
 class Recorder:
-    """Collects the converged steps; called with each.
+    """Collects the steps, interpolated states among them; called with each.
 
     Attributes
     ----------
@@ -69,7 +72,7 @@ class Recorder:
     _rows: list[tuple[float, ...]] = field(default_factory=list)
     _recorded: list[int] = field(default_factory=list)
     _last: State | None = None
-    _forces: dict[float, float] = field(default_factory=dict)
+    _forces: list[tuple[State, float]] = field(default_factory=list)
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
@@ -139,12 +142,13 @@ class Recorder:
         return sum(f * force for f, force in zip(factors, forces, strict=True))
 
     def _force_at(self, state: State) -> float:
-        """The force at a converged state, evaluated once for each load."""
-        if self.force is None:
-            return math.nan
-        if state.load not in self._forces:
-            self._forces[state.load] = self.force(state)
-        return self._forces[state.load]
+        """The force at a converged state, evaluated once for each of the last ones."""
+        known = next((force for one, force in self._forces if one is state), None)
+        if known is not None or self.force is None:
+            return math.nan if known is None else known
+        found = self.force(state)
+        self._forces = [*self._forces[-_FORCES + 1 :], (state, found)]
+        return found
 
     def _energy(self, state: State) -> float:
         """All that the work of the pressure has become, in mJ; contact looks at the state."""

@@ -47,7 +47,7 @@ class Actuation:
     maximum_pressure_kPa: float = 50.0
     recorded_step_kPa: float = 5.0
     first_step_kPa: float = 0.25
-    smallest_step_kPa: float = 0.02
+    smallest_step_kPa: float = 0.05
     tolerance_mm: float = 1e-2
     linear_solver: str = "auto"
     contact: bool = True

@@ -103,6 +103,14 @@ class Assembly:
         if any(grown):
             self._make_room()
 
+    def touches(self, state: State) -> bool:
+        """Whether anything touches at a state; looks around at it."""
+        self.look_around(state)
+        for term in self._touching:
+            if not isinstance(term, SearchingTerm):
+                term.energy(state.unknowns, state.load)
+        return any(self.touching)
+
     def linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
         """Energy, residual (size,) and matrix values (z,) of the pattern.
 

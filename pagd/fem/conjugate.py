@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from pagd.fem.assembly import State
 from pagd.fem.continuation import (
@@ -48,7 +49,7 @@ class ConjugatePath:
     control
         How the error of a first guess chooses the next step; its loads do not matter here.
     smallest_share
-        A step below this share of the first one is the end, …
+        A step below this share of the largest one between the known states is the end, …
     most_steps
         … and so are more steps than this.
     """
@@ -78,7 +79,8 @@ class ConjugatePath:
         control, wanted = self._control, list(loads)
         path = replace(path, failure="", is_unstable=False)
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
-        step = first = points[-1].conjugate - points[-2].conjugate
+        steps = [b.conjugate - a.conjugate for a, b in pairwise(points)]
+        step, smallest = steps[-1], self._smallest * max(steps)
         end, rejections = path.steps + self._most_steps, 0
         while wanted:
             if path.steps >= end:
@@ -92,7 +94,7 @@ class ConjugatePath:
                 rejections += 1
                 step = control.retry_step(taken, correction, count, rejections)
                 path = failed(path, result)
-                if step < self._smallest * first:
+                if step < smallest:
                     return replace(path, failure=result.reason or UNSTABLE)
                 continue
             point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])

@@ -4,7 +4,7 @@ The potential is ∫ ψ(g) dA over the undeformed slave faces, g the gap to the 
 and ψ a penalty whose pressure begins without a kink (:func:`contact_kernels.pressure_law`): with
 stiffness ε the pressure p presses the faces p/ε into each other. The residual is its derivative,
 but for pressures that are iterated (:mod:`pagd.fem.contact_pressures`); the tangent, symmetric, is
-that of the residual.
+that of the residual where these have converged.
 
 Which faces are near changes along the path. The pairs of faces that the tangent couples are kept
 in a set that only grows, and :meth:`FaceContact.update` tells when it has.
@@ -20,7 +20,7 @@ from scipy.spatial import KDTree
 
 from pagd.fem import contact_kernels as kernels
 from pagd.fem import shapes
-from pagd.fem.contact_pressures import advance_pressures, linearize_contact
+from pagd.fem.contact_pressures import advance_pressures, energy_of, linearize_contact
 from pagd.fem.faces import face_areas
 from pagd.fem.quadrature import divided, triangle
 from pagd.fem.term import ElementSystem, node_dofs
@@ -28,9 +28,6 @@ from pagd.fem.term import ElementSystem, node_dofs
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-
-#: In place of iterated pressures: those of the law at the state itself.
-BY_LAW: FloatArray = np.zeros((0, 0))
 
 # 27 points a face: between fewer, curved faces overlap unseen (with six on 5 mm faces by twice the
 # depth at the points).
@@ -99,7 +96,8 @@ class FaceContact:
         self._forget()
         self.dofs: IntArray = np.zeros((0, 36), np.int64)
         self._scratch = ElementSystem.of(self.dofs)
-        # Of the state linearised last: places of the nodes; p*, p′ and k of the points.
+        # Of the state whose residual was evaluated last: places of the nodes; p*, p′ and k of the
+        # points.
         self._last_positions = points
         self._iterated: FloatArray = np.zeros(0)
         self._pressures, self._slopes = np.zeros_like(self._areas), np.zeros_like(self._areas)
@@ -182,7 +180,6 @@ class FaceContact:
             self.law.width,
             self.law.first_pressure,
             internal,
-            internal.size == 0,
             keeps_slopes,
             self._pressures,
             self._slopes,
@@ -213,7 +210,8 @@ class FaceContact:
 
     def energy(self, unknowns: FloatArray, load: float) -> float:
         """Energy of the penetration, in mJ."""
-        return self.linearize(unknowns, BY_LAW, load, self._room())
+        self._project(self._positions(unknowns), keeps=self.law.reach)
+        return energy_of(self._found.gaps, self._areas, self.law.stiffness, self.law.width)
 
     def _room(self) -> ElementSystem:
         """Room for residuals without tangents."""

@@ -31,9 +31,8 @@ from pagd.fem.contact_kernels import add_force, add_stiffness, gap_derivatives, 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# A pressure that would turn negative is a tenth of what it was, at least; so often, down to this
-# in MPa, before the point counts as open.
-_SHARE_LEFT, _CUTS, _NONE_LEFT = 0.1, 6, 1e-6
+# After a correction a pressure is a tenth of what it was, at least, and so much in MPa.
+_SHARE_LEFT, _NONE_LEFT = 0.1, 1e-6
 
 
 @compiled
@@ -54,20 +53,17 @@ def pressure_near(
 
     A point that comes into contact, p* = 0, begins with the pressure of the law, ``first`` at most.
     """
+    if gap >= width:
+        return 0.0, 0.0, 0.0
+    _, slope, curvature = pressure_law(gap, stiffness, width)
     if iterated <= 0.0:
-        if gap >= width:
-            return 0.0, 0.0, 0.0
-        iterated = min(-pressure_law(gap, stiffness, width)[1], first)
-    for _ in range(_CUTS):
-        if iterated < _NONE_LEFT and gap >= width:
-            break
-        iterated = max(iterated, _NONE_LEFT)
-        closing, slope = inverse_law(iterated, stiffness, width)
-        pressure = iterated + slope * (width - gap - closing)
-        if pressure > 0.0:
-            return pressure, slope, iterated
-        iterated *= _SHARE_LEFT
-    return 0.0, 0.0, 0.0
+        iterated = min(-slope, first)
+    closing, inverse = inverse_law(iterated, stiffness, width)
+    pressure = iterated + inverse * (width - gap - closing)
+    if pressure > 0.0:
+        return pressure, inverse, iterated
+    # The pressure is far too large: that of the law.
+    return -slope, curvature, -slope
 
 
 @compiled
@@ -102,7 +98,6 @@ def linearize_contact(
     width: float,
     first: float,
     iterated: FloatArray,
-    by_law: bool,
     keeps_slopes: bool,
     pressures: FloatArray,
     slopes: FloatArray,
@@ -115,8 +110,8 @@ def linearize_contact(
     No tangents where there is no room for them, (0, 666).
 
     ``areas`` (S, Q) are the undeformed areas of the quadrature points and ``pairs`` the pair of
-    each candidate, or −1. Also fills the pressures p′ (S, Q) from those iterated (S, Q), or
-    ``by_law`` from the gaps alone, and the slopes k (S, Q), kept where known if ``keeps_slopes``.
+    each candidate, or −1. Also fills the pressures p′ (S, Q) from those iterated (S, Q), and the
+    slopes k (S, Q), kept where known if ``keeps_slopes``.
     """
     for e in prange(slaves.shape[0]):
         normal, weights = np.zeros(3), np.empty(12)
@@ -128,15 +123,11 @@ def linearize_contact(
             if c < 0 or pairs[c] < 0:
                 pressures[e, q], slopes[e, q] = 0.0, 0.0
                 continue
-            energy, slope, curvature = pressure_law(gap, stiffness, width)
-            energies[e] += areas[e, q] * energy
-            if by_law:
-                pressures[e, q], slopes[e, q], turning_by = -slope, curvature, -slope
-            else:
-                known = slopes[e, q] if keeps_slopes else 0.0
-                pressures[e, q], slopes[e, q], turning_by = _pressure(
-                    iterated[e, q], gap, known, stiffness, width, first
-                )
+            energies[e] += areas[e, q] * pressure_law(gap, stiffness, width)[0]
+            known = slopes[e, q] if keeps_slopes else 0.0
+            pressures[e, q], slopes[e, q], turning_by = _pressure(
+                iterated[e, q], gap, known, stiffness, width, first
+            )
             if pressures[e, q] <= 0.0:
                 continue
             gap_derivatives(
@@ -214,3 +205,14 @@ def advance_pressures(
                     change += weights[6 + a] * normal[i] * correction[3 * face[a] + i]
             least = max(_SHARE_LEFT * iterated[e, q], _NONE_LEFT)
             result[e, q] = max(pressures[e, q] - slopes[e, q] * change, least)
+
+
+@compiled
+def energy_of(gaps: FloatArray, areas: FloatArray, stiffness: float, width: float) -> float:
+    """Energy of gaps (S, Q) by the law, in mJ; ``areas`` (S, Q)."""
+    total = 0.0
+    for e in range(gaps.shape[0]):
+        for q in range(gaps.shape[1]):
+            if gaps[e, q] < width:
+                total += areas[e, q] * pressure_law(gaps[e, q], stiffness, width)[0]
+    return total

@@ -118,6 +118,9 @@ class LoadPath:
 #: Why a path ends where Newton's method converged, but on states that nothing rests in.
 UNSTABLE = "the equilibrium is unstable"
 
+# A step that would end so near a wanted load, as a share of it, ends there.
+_NEAR = 0.05
+
 Observer = Callable[[Step], str | None]
 Boundary = Callable[[float, FloatArray], None]
 
@@ -164,6 +167,7 @@ class Continuation:
         self._boundary = boundary
         #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
+        self._touches = False
 
     def follow(
         self, loads: Sequence[float], observe: Observer, start: State | None = None
@@ -183,12 +187,13 @@ class Continuation:
             result = self._try(load, known)
             correction = result.corrections[0] if result.corrections else math.inf
             path = tried(path, result)
-            if result.state is not None and not result.is_unstable:
-                path, state = self._pass_over(result.state, wanted, observe, path)
-            else:
+            between: list[Step] = []
+            state = result.state
+            if state is None or result.is_unstable:
                 path, state = failed(path, result), None
-            if path.stopped:
-                return path
+            else:
+                path, found = self._pass_over(state, wanted, path)
+                state, between = (None, []) if found is None else (state, found)
             taken = load - before.load
             if state is None:
                 rejections += 1
@@ -198,11 +203,13 @@ class Continuation:
                 path = replace(path, failure="")
                 continue
             path, rejections = longer(path, load, result), 0
-            lands = bool(load == wanted[0])
-            stop = observe(Step(state, result.iterations, lands))
-            if stop:
-                return replace(path, stopped=stop)
-            del wanted[:lands]
+            lands = bool(load in wanted)
+            for reached in (*between, Step(state, result.iterations, lands)):
+                self._newton.assembly.look_around(reached.state)
+                stop = observe(reached)
+                if stop:
+                    return replace(path, load=reached.state.load, stopped=stop)
+            del wanted[: len(between) + lands]
             # A step shortened only to land on a wanted load does not shorten the next.
             following = control.next_step(taken, correction, known)
             step = max(step, following) if following > taken else following
@@ -211,10 +218,11 @@ class Continuation:
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
         """The load after a step; the way to a load to land on is divided evenly."""
         passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
-        if passes and not any(self._newton.assembly.touching):
-            load = self._step_towards(wanted[-1], step)
-            return next((w for w in wanted if math.isclose(w, load)), load)
-        return self._step_towards(wanted[0], step)
+        if not passes or self._touches:
+            return self._step_towards(wanted[0], step)
+        load = self._step_towards(wanted[-1], step)
+        near = _NEAR * (load - self.states[-1].load)
+        return next((w for w in wanted if abs(w - load) <= near), load)
 
     def _step_towards(self, target: float, step: float) -> float:
         load = self.states[-1].load
@@ -236,29 +244,31 @@ class Continuation:
         return self._newton.solve(guess, before=before, largest_first=trust)
 
     def _pass_over(
-        self, reached: State, wanted: list[float], observe: Observer, path: LoadPath
-    ) -> tuple[LoadPath, State | None]:
-        """Observe the states at wanted loads on the way, taken off the list.
+        self, reached: State, wanted: Sequence[float], path: LoadPath
+    ) -> tuple[LoadPath, list[Step] | None]:
+        """Steps at the wanted loads on the way to a state; it is the last of the path then.
 
-        Returns the path and the reached state, none where no state at a wanted load was found; the
-        path then has the reason as its ``failure``.
+        None where no state at a wanted load was found; the path then has the reason as its
+        ``failure``.
         """
-        kept = self._control.order + 2
-        states = [*self.states, reached][-kept:]
-        while wanted[0] < reached.load:
-            state, among, iterations = state_between(self._newton, states, wanted[0]), states, 0
-            if state is None:
-                result = self._newton.solve(at_load(states, wanted[0]), before=states[-2])
-                path, among, iterations = tried(path, result), [], result.iterations
-                if result.state is None or result.is_unstable:
-                    self.states = states[:-1][-kept:]
-                    return replace(failed(path, result), failure=result.reason or UNSTABLE), None
-                path, state = longer(path, wanted[0], result), result.state
-                states.insert(-1, state)
-            path = replace(path, load=wanted[0])
-            stop = observe(Step(state, iterations, True, tuple(among)))
-            del wanted[0]
-            if stop:
-                return replace(path, stopped=stop), None
-        self.states = states[-kept:]
-        return path, reached
+        kept, start = self._control.order + 2, path
+        states, steps = [*self.states, reached][-kept:], []
+        touches = self._control.dense and self._newton.assembly.touches(reached)
+        for load in wanted:
+            if load >= reached.load:
+                break
+            state = None if touches else state_between(self._newton, states, load)
+            if state is not None:
+                steps.append(Step(state, 0, True, tuple(states)))
+                continue
+            near = states[-2:] if touches else states
+            result = self._newton.solve(at_load(near, load), before=states[-2])
+            path = tried(path, result)
+            if result.state is None or result.is_unstable:
+                work = replace(start, iterations=path.iterations, corrections=path.corrections)
+                return replace(failed(work, result), failure=result.reason or UNSTABLE), None
+            path = longer(path, load, result)
+            states.insert(-1, result.state)
+            steps.append(Step(result.state, result.iterations, True))
+        self.states, self._touches = states[-kept:], touches
+        return path, steps

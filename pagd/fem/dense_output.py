@@ -78,9 +78,9 @@ def state_between(newton: Newton, states: Sequence[State], load: float) -> State
     """The state at a load between the last two of ``states``, if it is known well enough.
 
     It is where the polynomial through all of them and the one without the first differ by less
-    than the tolerance of the displacements; the difference is the error of the latter, that of
-    the former, which is returned, is smaller. Not where anything touches: contact begins with a
-    kink.
+    than the tolerance of the displacements; the difference is the error of the latter, and that of
+    the former, which is returned, is smaller as long as the path is smooth. So not where anything
+    touches at the state, nor should it at the last of ``states``: contact begins with a kink.
     """
     if len(states) < FEWEST:
         return None
@@ -88,5 +88,4 @@ def state_between(newton: Newton, states: Sequence[State], load: float) -> State
     difference = newton.largest_displacement(found.unknowns - coarser.unknowns)
     if not difference < newton.settings.tolerance:
         return None
-    newton.assembly.look_around(found)
-    return None if any(newton.assembly.touching) else found
+    return None if newton.assembly.touches(found) else found

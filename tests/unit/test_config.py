@@ -63,7 +63,7 @@ def test_numbers_may_be_written_as_powers(tmp_path: Path) -> None:
         ("solve: {maximum_pressure_kPa: .inf}", "maximum_pressure_kPa = inf must be finite"),
         (
             "solve: {first_step_kPa: 0.01}",
-            "solve.first_step_kPa = 0.01 must be at least solve.smallest_step_kPa = 0.02",
+            "solve.first_step_kPa = 0.01 must be at least solve.smallest_step_kPa = 0.05",
         ),
         ("mesh: {size_mm: -3}", "mesh.size_mm = -3 must be greater than 0"),
     ],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,7 +11,7 @@ from test_fem_newton import Spring, newton
 
 from pagd.fem.assembly import State
 from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
-from pagd.fem.dense_output import lagrange_factors, state_between, states_to_use
+from pagd.fem.dense_output import at_load, lagrange_factors, state_between, states_to_use
 from pagd.fem.newton import Newton, NewtonResult
 
 TOLERANCE = 1e-4
@@ -145,6 +145,35 @@ def test_where_no_state_between_is_found_the_step_is_shorter() -> None:
     assert [step.state.load for step in steps if step.wanted] == WANTED
     loads = [step.state.load for step in steps]
     assert loads == sorted(set(loads))
+
+
+def test_nothing_is_told_of_a_step_that_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two wanted loads in one step the first is interpolated, the second not found."""
+    interpolated, avoided = WANTED[1], WANTED[2]
+
+    def between(newton: Newton, states: Sequence[State], load: float) -> State | None:
+        return at_load(states, load) if load == interpolated else None
+
+    monkeypatch.setattr("pagd.fem.continuation.state_between", between)
+    steps: list[Step] = []
+    method = Jumpy(loose(Spring(stiffening=1.0)), avoided)
+    control = StepControl(first=0.5, wanted_correction=50.0, dense=True, growth=20.0)
+    path = Continuation(method, control).follow(WANTED, steps.append)  # type: ignore[arg-type]
+    assert method.tried.count(avoided) > 1
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    loads = [step.state.load for step in steps]
+    assert loads == sorted(set(loads))
+    assert path.rejected >= 1
+    assert path.steps == sum(step.iterations > 0 for step in steps)
+
+
+def test_steps_do_not_pass_over_loads_where_something_touches() -> None:
+    class Touched(Spring):
+        excess, touching = 0.0, 1
+
+    steps, _ = follow(loose(Touched(stiffening=1.0)), growth=5.0)
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    assert not any(step.among for step in steps)
 
 
 def test_the_observer_can_stop_at_a_state_between() -> None:
