@@ -51,7 +51,8 @@ class ActuationResult:
         after every quarter of growth of the cavity where the pressure falls, and last the state at
         which the analysis ended early, whatever its pressure.
     history
-        One row a converged step, in the order of the path, the state without pressure first:
+        One row a step, interpolated states among them, in the order of the path, the state without
+        pressure first:
         ``pressure_kPa``, ``cavity_volume_mm3`` and ``stored_energy_mJ`` of the whole actuator
         (the latter since pressure zero, with the potential of gravity), ``newton_iterations``,
         ``recorded`` (the k-th true row is the k-th state), ``smallest_gap_mm`` between walls

@@ -16,7 +16,7 @@ STATES = (
 )
 
 HISTORY = (
-    Column("pressure_kPa", "double", "kPa", "pressure of a converged step"),
+    Column("pressure_kPa", "double", "kPa", "pressure of the step"),
     Column("cavity_volume_mm3", "double", "mm³", "volume of the cavity"),
     Column(
         "stored_energy_mJ", "double", "mJ", "energy since zero pressure: elastic, contact, gravity"

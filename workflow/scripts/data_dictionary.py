@@ -92,7 +92,7 @@ Sections lie at the fixed end (0), in the middle of every gap, and at the tip (t
     Table(
         "Steps of the free actuation",
         ("designs/*/solve/history.parquet",),
-        "a converged step, the state without pressure first",
+        "a step or an interpolated state, the state without pressure first",
         HISTORY,
         """\
 Rows are in the order of the path, along which the pressure falls behind a limit point. Figures
@@ -102,10 +102,11 @@ pressure is that of elastomer, paper and contact, and under gravity its potentia
     Table(
         "Steps with a held tip",
         ("designs/*/solve/blocked_force.parquet",),
-        "a converged step of the analysis of the blocked force",
+        "a step or an interpolated state of the analysis of the blocked force",
         BLOCKED,
         """\
-There is no such file where `solve.blocked_force` is `none`. The force is known at every step.""",
+There is no such file where `solve.blocked_force` is `none`. The force of an
+interpolated state is interpolated too.""",
     ),
     Table(
         "Deformed states",
