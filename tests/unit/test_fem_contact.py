@@ -269,6 +269,29 @@ def test_a_correction_takes_the_pressures_along() -> None:
     np.testing.assert_allclose(after[internal > 0], 0.11 * law.stiffness, rtol=1e-9)
 
 
+def test_a_residual_near_a_state_is_that_of_the_state_and_its_tangent_further_on() -> None:
+    """At the state itself; and at one near by, with the slopes k of the first."""
+    contact, points = facing(-0.01, ContactLaw())
+    unknowns, nearer = np.zeros(points.size), np.zeros(points.shape)
+    contact.update(unknowns)
+    internal, system = contact.internal_at_rest(), ElementSystem.of(contact.dofs)
+    for _ in range(30):
+        contact.linearize(unknowns, internal, 0.0, system)
+        internal = contact.advance(unknowns)
+    contact.linearize(unknowns, internal, 0.0, system)
+    first = system.residual.copy()
+    near = np.zeros_like(first)
+    contact.residual_near(unknowns, internal, 0.0, near)
+    np.testing.assert_allclose(near, first, rtol=1e-12)
+    assert np.abs(first).max() > 1e-3
+    # Flat and parallel: only the gap changes, and the pressure by k times as much.
+    slope = -pressure_law(-0.01, contact.law.stiffness, contact.law.width)[1]
+    stiffness = pressure_law(-0.01, contact.law.stiffness, contact.law.width)[2]
+    nearer[25:, 2] = -0.002
+    contact.residual_near(nearer.ravel(), internal, 0.0, near)
+    np.testing.assert_allclose(near, first * (1 + 0.002 * stiffness / slope), rtol=1e-9)
+
+
 def test_the_closest_point_on_a_curved_face() -> None:
     """A face bent to z = x²/10: the closest point to one above it has its normal through it."""
     corners = np.array([[0, 0], [4, 0], [0, 4]], float)
