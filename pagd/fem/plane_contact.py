@@ -88,7 +88,8 @@ class PlaneContact:
     normal
         Direction (3,) that points to where the body may be; of any length but zero.
     law
-        Penalty; ``reach``, ``deepest``, ``trusted`` and ``first_pressure`` have no meaning for a plane.
+        Penalty; ``reach``, ``deepest``, ``trusted`` and ``first_pressure`` have no meaning for a
+        plane.
 
     Raises
     ------
