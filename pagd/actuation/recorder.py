@@ -15,7 +15,6 @@ from pagd.errors import Status
 from pagd.fem.assembly import State
 from pagd.fem.clock import Clock
 from pagd.fem.continuation import Step
-from pagd.fem.dense_output import lagrange_factors
 from pagd.fem.fields import share_beyond, strains
 
 FloatArray = NDArray[np.float64]
@@ -25,9 +24,6 @@ OVERSTRETCHED_SHARE = 0.01
 
 # Growth of the cavity after which a state is recorded whatever its pressure.
 _GROWTH = 1.25
-
-# As many forces are kept as states may be interpolated among.
-_FORCES = 12
 
 _KPA = 1e-3  # MPa
 
@@ -72,7 +68,6 @@ class Recorder:
     _rows: list[tuple[float, ...]] = field(default_factory=list)
     _recorded: list[int] = field(default_factory=list)
     _last: State | None = None
-    _forces: list[tuple[State, float]] = field(default_factory=list)
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
@@ -85,7 +80,7 @@ class Recorder:
         energy = self._energy(state)
         gap = body.contact.smallest_gap if body.contact else math.inf
         volume = body.volume(state.unknowns)
-        force = self._force_of(step)
+        force = self.force(state) if self.force else math.nan
         self._rows.append((pressure, volume, energy, step.iterations, gap, force))
         if step.wanted or self._has_grown():
             self.record_last()
@@ -130,25 +125,6 @@ class Recorder:
         recorded = np.zeros(len(self._rows), np.bool_)
         recorded[self._recorded] = True
         return columns | {"recorded": recorded}
-
-    def _force_of(self, step: Step) -> float:
-        """The force on what holds the tip, interpolated where the state is."""
-        if self.force is None:
-            return math.nan
-        if not step.among:
-            return self._force_at(step.state)
-        factors = lagrange_factors([state.load for state in step.among], step.state.load)
-        forces = [self._force_at(state) for state in step.among]
-        return sum(f * force for f, force in zip(factors, forces, strict=True))
-
-    def _force_at(self, state: State) -> float:
-        """The force at a converged state, evaluated once for each of the last ones."""
-        known = next((force for one, force in self._forces if one is state), None)
-        if known is not None or self.force is None:
-            return math.nan if known is None else known
-        found = self.force(state)
-        self._forces = [*self._forces[-_FORCES + 1 :], (state, found)]
-        return found
 
     def _energy(self, state: State) -> float:
         """All that the work of the pressure has become, in mJ; contact looks at the state."""

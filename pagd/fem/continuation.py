@@ -91,8 +91,8 @@ class Step:
     iterations: int
     wanted: bool
     """Whether the load is one of those asked for."""
-    among: tuple[State, ...] = ()
-    """The converged states that this one is interpolated among, if it is."""
+    interpolated: bool = False
+    """Whether the state lies between those of steps, and was not solved for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +259,7 @@ class Continuation:
                 break
             state = None if touches else state_between(self._newton, states, load)
             if state is not None:
-                steps.append(Step(state, 0, True, tuple(states)))
+                steps.append(Step(state, 0, True, interpolated=True))
                 continue
             near = states[-2:] if touches else states
             result = self._newton.solve(at_load(near, load), before=states[-2])

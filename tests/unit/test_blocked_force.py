@@ -45,6 +45,16 @@ def test_the_edge_stays_and_presses() -> None:
     assert found.figures["blocked_force_N"] == force[-1]
 
 
+def test_the_force_is_as_good_at_every_recorded_pressure() -> None:
+    """Displacements of some micrometres off are forces of some percent, where walls are stiff."""
+    many = replace(WANTED, recorded_step_kPa=1.0)
+    found = blocked_force(beam(), MATERIAL, PAPER, many)
+    exact = blocked_force(beam(), MATERIAL, PAPER, replace(many, tolerance_mm=1e-6))
+    forces = [r.history["blocked_force_N"][r.history["recorded"]] for r in (found, exact)]
+    np.testing.assert_allclose(forces[0], forces[1], rtol=0.01, atol=1e-12)
+    assert (found.history["newton_iterations"][1:] > 0).all()
+
+
 def test_the_force_of_a_half_is_that_of_the_whole() -> None:
     forces = [
         float(blocked_force(beam(half), MATERIAL, PAPER, WANTED).figures["blocked_force_N"])

@@ -101,12 +101,12 @@ def test_factors_are_one_at_their_place_and_zero_at_the_others() -> None:
 def test_steps_pass_over_wanted_loads() -> None:
     steps, path = follow(loose(Spring(stiffening=1.0)), growth=5.0)
     assert [step.state.load for step in steps if step.wanted] == WANTED
-    between = [step for step in steps if step.among]
+    between = [step for step in steps if step.interpolated]
     assert between
     for step in steps:
-        tolerance = TOLERANCE if step.among else 1e-6
+        tolerance = TOLERANCE if step.interpolated else 1e-6
         assert step.state.unknowns[0] == pytest.approx(solved(step.state.load), abs=tolerance)
-        assert (step.iterations == 0) == bool(step.among)
+        assert (step.iterations == 0) == step.interpolated
     assert path.load == WANTED[-1]
     assert path.steps == len(steps) - len(between)
     loads = [step.state.load for step in steps]
@@ -123,14 +123,14 @@ def test_with_prescribed_unknowns_every_wanted_load_is_solved_for() -> None:
     method = loose(Spring(stiffening=1.0))
     Continuation(method, control, boundary).follow(WANTED, steps.append)
     assert [step.state.load for step in steps if step.wanted] == WANTED
-    assert not any(step.among for step in steps)
+    assert not any(step.interpolated for step in steps)
 
 
 def test_what_is_not_known_well_enough_is_solved_for() -> None:
     exact = newton(Spring(stiffening=1.0), tolerance=1e-12, iterations=20)
     steps, _ = follow(exact, growth=5.0)
     assert [step.state.load for step in steps if step.wanted] == WANTED
-    assert not any(step.among for step in steps)
+    assert not any(step.interpolated for step in steps)
 
 
 def test_where_no_state_between_is_found_the_step_is_shorter() -> None:
@@ -173,7 +173,7 @@ def test_steps_do_not_pass_over_loads_where_something_touches() -> None:
 
     steps, _ = follow(loose(Touched(stiffening=1.0)), growth=5.0)
     assert [step.state.load for step in steps if step.wanted] == WANTED
-    assert not any(step.among for step in steps)
+    assert not any(step.interpolated for step in steps)
 
 
 def test_the_observer_can_stop_at_a_state_between() -> None:
@@ -181,7 +181,7 @@ def test_the_observer_can_stop_at_a_state_between() -> None:
 
     def observe(step: Step) -> str | None:
         seen.append(step.state.load)
-        return "enough" if step.among else None
+        return "enough" if step.interpolated else None
 
     control = StepControl(first=0.5, wanted_correction=0.3, dense=True, growth=5.0)
     path = Continuation(loose(Spring(stiffening=1.0)), control).follow(WANTED, observe)
