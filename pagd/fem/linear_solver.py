@@ -95,6 +95,19 @@ def _pardiso_entry_point() -> Callable[..., None]:
     return entry
 
 
+@cache
+def _trimmer() -> Callable[[int], int] | None:
+    """The function of the C library that gives free memory back; none where there is none."""
+    return getattr(ctypes.CDLL(None), "malloc_trim", None) if os.name == "posix" else None
+
+
+def _trim() -> None:
+    """Give free memory back: among what is still in use, new factors would find no room in it."""
+    trimmer = _trimmer()
+    if trimmer is not None:
+        trimmer(0)
+
+
 class PardisoSolver:
     """MKL Pardiso through the library that pypardiso finds.
 
@@ -213,6 +226,7 @@ class PardisoSolver:
             empty = np.zeros(1)
             self._phase(self._RELEASE, empty, empty)
             self._analysed = False
+            _trim()
 
 
 class SuperLUSolver:

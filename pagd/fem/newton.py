@@ -268,7 +268,7 @@ class Newton:
         """The guess, linearised, or what is left of it."""
         state = guess
         for _ in range(self.settings.shortenings):
-            self.assembly.look_around(state)
+            self._look_around(state)
             if before is not None and self.assembly.excess_near > 0:
                 # To know that, no tangent is needed.
                 state = _half_way(before, state)
@@ -277,8 +277,14 @@ class Newton:
             if before is None or (np.isfinite(linearised[0]) and self.assembly.excess == 0):
                 return state, linearised
             state = _half_way(before, state)
-        self.assembly.look_around(state)
+        self._look_around(state)
         return state, self.assembly.linearize(state)
+
+    def _look_around(self, state: State) -> None:
+        self.assembly.look_around(state)
+        if self.assembly.pattern is not self._pattern:
+            # Not to have the old factors beside new tangents.
+            self.solver.free()
 
     def _factorise(
         self, state: State, residual: FloatArray, values: FloatArray, conjugate: float | None
