@@ -130,13 +130,13 @@ def run(
             result = free_actuation(body, *both, stop, progress)
         outcome.figures |= _figures(result) | identity(read)
         outcome.end(result.status, result.reason)
+        if actuation.blocked_force != "none":
+            with meter.part("blocked_force"):
+                held = blocked_force(body, *both, collision, progress)
+            outcome.figures["blocked_force"] = _ending(held)
+            _write(held, folder / BLOCKED_STATES_NAME, folder / BLOCKED_NAME, BLOCKED)
+        # At the end, since the memory that writing takes is not given back.
         _write_free(read, result, folder, vtu=vtu)
-        if actuation.blocked_force == "none":
-            return
-        with meter.part("blocked_force"):
-            held = blocked_force(body, *both, collision, progress)
-        outcome.figures["blocked_force"] = _ending(held)
-        _write(held, folder / BLOCKED_STATES_NAME, folder / BLOCKED_NAME, BLOCKED)
 
     return run_stage(
         "solve",
