@@ -33,6 +33,9 @@ _PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0, "contraction": 0.55
 # Largest factor from one step to the next: rows of chambers have smooth paths until walls touch.
 _GROWTH = 5.0
 
+# With a held tip, steps of the volume end at so much of the last ones of the pressure.
+_SMALLEST_HELD = 0.1
+
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
 
@@ -96,12 +99,22 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     if not path.failure or len(continuation.states) < 2:
         return _Followed(path)
     left = [pressure for pressure in pressures if pressure > path.load]
-    # Limit points are where steps have to be small.
-    slower = replace(control, growth=StepControl().growth, retry_again=control.retry)
-    further = ConjugatePath(newton, slower).follow(continuation.states, left, recorder, path)
+    volumes = _volumes(newton, control, is_held=recorder.force is not None)
+    further = volumes.follow(continuation.states, left, recorder, path)
     if further.steps == path.steps:
         return _Followed(further)
     return _Followed(further, path.load / _KPA)
+
+
+def _volumes(newton: Newton, control: StepControl, is_held: bool) -> ConjugatePath:
+    """Control of the volume: limit points are where steps have to be small.
+
+    Not so with a held tip: it buckles, most often, and then no step of the volume leads on.
+    """
+    control = replace(control, growth=StepControl().growth)
+    if is_held:
+        return ConjugatePath(newton, control, smallest_share=_SMALLEST_HELD)
+    return ConjugatePath(newton, replace(control, retry_again=control.retry))
 
 
 def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | None]:
