@@ -132,12 +132,20 @@ def made_of(named: NamedDesign, config: Mapping[str, Any], halvings: int = 0) ->
 
 
 def commit() -> str | None:
-    """Commit of the repository, with a mark where files differ from it; None outside of one."""
-    command = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
+    """Commit of the repository, with a mark where files differ from it; None outside of one.
+
+    Pages in docs do not count: other commands write their sections there.
+    """
     try:
-        answer = subprocess.run(
-            command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True
-        )
+        name = _git("rev-parse", "--short", "HEAD")
+        differs = _git("status", "--porcelain", "--untracked-files=no", "--", ":/", ":!/docs")
     except (OSError, subprocess.CalledProcessError):
         return None
+    return f"{name}-dirty" if differs else name
+
+
+def _git(*words: str) -> str:
+    answer = subprocess.run(
+        ["git", *words], cwd=Path(__file__).parent, capture_output=True, text=True, check=True
+    )
     return answer.stdout.strip()
