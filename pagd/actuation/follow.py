@@ -33,8 +33,11 @@ _PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0, "contraction": 0.55
 # Largest factor from one step to the next: rows of chambers have smooth paths until walls touch.
 _GROWTH = 5.0
 
-# With a held tip, steps of the volume end at so much of the last ones of the pressure.
-_SMALLEST_HELD = 0.1
+# Steps of the volume that hardly lead on end at so much of the last ones of the pressure.
+_SMALLEST_HURRIED = 0.1
+
+# Followed is as near as this share of the pressure to where the actuator is foretold to buckle.
+_FORESIGHT = 0.01
 
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
@@ -92,28 +95,33 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
         growth=_GROWTH,
         # Between states a force is known far worse than the displacements: walls are stiff.
         dense=recorder.force is None,
+        foresight=_FORESIGHT,
     )
     pressures = list(actuation.recorded_kPa() * _KPA)
     continuation = Continuation(newton, control)
     path = continuation.follow(pressures, recorder, start)
     if not path.failure or len(continuation.states) < 2:
         return _Followed(path)
+    if path.critical is not None and path.critical.under_conjugate:
+        # No more would a rising volume lead on.
+        return _Followed(path)
     left = [pressure for pressure in pressures if pressure > path.load]
-    volumes = _volumes(newton, control, is_held=recorder.force is not None)
+    hurried = recorder.force is not None and path.critical is None
+    volumes = _volumes(newton, control, hurried)
     further = volumes.follow(continuation.states, left, recorder, path)
     if further.steps == path.steps:
         return _Followed(further)
     return _Followed(further, path.load / _KPA)
 
 
-def _volumes(newton: Newton, control: StepControl, is_held: bool) -> ConjugatePath:
+def _volumes(newton: Newton, control: StepControl, hurried: bool) -> ConjugatePath:
     """Control of the volume: limit points are where steps have to be small.
 
-    Not so with a held tip: it buckles, most often, and then no step of the volume leads on.
+    ``hurried`` where no limit point is foretold and the tip is held: few steps lead on from there.
     """
     control = replace(control, growth=StepControl().growth)
-    if is_held:
-        return ConjugatePath(newton, control, smallest_share=_SMALLEST_HELD)
+    if hurried:
+        return ConjugatePath(newton, control, smallest_share=_SMALLEST_HURRIED)
     return ConjugatePath(newton, replace(control, retry_again=control.retry))
 
 
@@ -159,6 +167,12 @@ def _ending(
         return Status.ok, None
     limits = limit_points(pressure_kPa)
     highest = float(pressure_kPa[limits[-1]] if len(limits) else pressure_kPa.max())
+    if path.critical is not None and path.critical.under_conjugate:
+        return Status.buckled, (
+            f"At {path.critical.load / _KPA:.4g} kPa, as its stiffness up to "
+            f"{path.load / _KPA:.4g} kPa foretells, the equilibrium loses its stability: the "
+            "actuator buckles."
+        )
     if path.is_unstable:
         reason = f"At {highest:.4g} kPa the equilibrium loses its stability: the actuator buckles"
         if len(limits):
@@ -190,6 +204,8 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
     }
     if solver.factor_nonzeros is not None:
         figures["factor_nonzeros"] = solver.factor_nonzeros
+    if path.critical is not None:
+        figures["critical_pressure_kPa"] = path.critical.load / _KPA
     if followed.volume_controlled_from is not None:
         figures["volume_controlled_from_kPa"] = followed.volume_controlled_from
     return figures

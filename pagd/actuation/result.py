@@ -63,7 +63,8 @@ class ActuationResult:
         part; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator;
         ``linear_solver``;
         ``largest_pressure_kPa`` and ``limit_points``, its maxima along the path, and
-        ``volume_controlled_from_kPa`` where pressure control failed; where walls face each
+        ``volume_controlled_from_kPa`` where pressure control failed, ``critical_pressure_kPa``
+        where stability is foretold to be lost; where walls face each
         other and contact is on ``initial_gap_mm`` of the undeformed body,
         ``deepest_penetration_mm`` (of all steps), ``penetration_share`` of the initial gap and,
         where any come near, ``smallest_gap_mm`` (of the last step with such; negative for a

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pagd.fem.assembly import State
 from pagd.fem.dense_output import FEWEST, at_load, state_between, states_to_use
 from pagd.fem.newton import Newton, NewtonResult
+from pagd.fem.stability import Critical, StabilityWatch
 
 FloatArray = NDArray[np.float64]
 
@@ -44,6 +45,10 @@ class StepControl:
     dense
         Whether steps may pass over wanted loads where nothing touches; the states there are
         interpolated (see :mod:`pagd.fem.dense_output`), or solved for where that is too rough.
+    foresight
+        How near, as a share of the load, a path is followed to where it is foretold to lose its
+        stability (see :mod:`pagd.fem.stability`) once a try beyond that has failed; 0: foretell
+        nothing.
     """
 
     first: float = 2.5e-4
@@ -57,6 +62,7 @@ class StepControl:
     trust: float = 4.0
     patience: int = 20
     dense: bool = False
+    foresight: float = 0.0
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that converged from a guess through ``states`` states."""
@@ -102,7 +108,8 @@ class LoadPath:
     ``stopped`` is what the observer gave as its reason, ``failure`` why no further
     step converged; both are empty where the last load was reached. ``is_unstable`` tells that
     the equilibrium of the last step, or of a try beyond it, is unstable under the load.
-    ``iterations`` counts the factorisations, ``corrections`` all corrections.
+    ``iterations`` counts the factorisations, ``corrections`` all corrections. ``critical`` is where
+    stability is lost, if that is foretold.
     """
 
     load: float
@@ -113,10 +120,14 @@ class LoadPath:
     failure: str = ""
     is_unstable: bool = False
     corrections: int = 0
+    critical: Critical | None = None
 
 
 #: Why a path ends where Newton's method converged, but on states that nothing rests in.
 UNSTABLE = "the equilibrium is unstable"
+
+# So much of the way to where stability is lost is the next step.
+_APPROACH = 0.6
 
 # A step that would end so near a wanted load, as a share of it, ends there.
 _NEAR = 0.05
@@ -168,6 +179,7 @@ class Continuation:
         #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
         self._touches = False
+        self._watch = StabilityWatch(newton)
 
     def follow(
         self, loads: Sequence[float], observe: Observer, start: State | None = None
@@ -198,6 +210,11 @@ class Continuation:
             if state is None:
                 rejections += 1
                 step = control.retry_step(taken, correction, known, rejections)
+                critical = self._critical_before(load, result)
+                if critical is not None:
+                    if critical - before.load <= control.foresight * critical:
+                        return self._ended_unstable(path)
+                    step = min(step, _APPROACH * (critical - before.load))
                 if step < control.smallest or rejections > control.patience:
                     return replace(path, failure=path.failure or result.reason or UNSTABLE)
                 path = replace(path, failure="")
@@ -214,6 +231,18 @@ class Continuation:
             following = control.next_step(taken, correction, known)
             step = max(step, following) if following > taken else following
         return path
+
+    def _critical_before(self, load: float, result: NewtonResult) -> float | None:
+        """Where stability is lost before a load that was tried in vain; none if it is not."""
+        if not self._control.foresight or result.iterations < 2:
+            # A first guess far off is told at once and costs less than foretelling.
+            return None
+        found = self._watch.critical_load(self.states)
+        return found if found is not None and found <= load else None
+
+    def _ended_unstable(self, path: LoadPath) -> LoadPath:
+        critical = self._watch.critical(self.states)
+        return replace(path, failure=UNSTABLE, is_unstable=True, critical=critical)
 
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
         """The load after a step; the way to a load to land on is divided evenly."""

@@ -136,7 +136,7 @@ class Newton:
         self.load_term = load_term
         self.solver = solver
         self.settings = settings or NewtonSettings()
-        self._displacements = displacements
+        self.displacements = displacements
         self._multipliers = int((assembly.free >= displacements).sum())
         self._solution = self._by_load = np.zeros(0)
         # So many solves to come without iterated stresses, and after the next failure.
@@ -191,6 +191,14 @@ class Newton:
             corrections=again.corrections + result.corrections,
         )
 
+    def linearise_at(self, state: State) -> None:
+        """Factorise the tangent at a state, for solutions with other right-hand sides.
+
+        Raises ``SingularMatrixError``.
+        """
+        self._look_around(state)
+        self._factorise(state, *self.assembly.linearize(state)[1:], None)
+
     def _solve(
         self, guess: State, conjugate: float | None, before: State | None, largest_first: float
     ) -> NewtonResult:
@@ -235,7 +243,7 @@ class Newton:
 
     def largest_displacement(self, correction: FloatArray) -> float:
         """The largest displacement of a correction (size,) of the unknowns, in mm."""
-        return float(np.abs(correction[: self._displacements]).max())
+        return float(np.abs(correction[: self.displacements]).max())
 
     def _settle(
         self, state: State, trusted: float, corrections: list[float], conjugate: float | None

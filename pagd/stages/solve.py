@@ -183,6 +183,7 @@ _HELD_FIGURES = (
     "steps",
     "rejected_steps",
     "largest_pressure_kPa",
+    "critical_pressure_kPa",
     "limit_points",
     "volume_controlled_from_kPa",
     "smallest_gap_mm",

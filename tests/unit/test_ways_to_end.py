@@ -14,6 +14,7 @@ from pagd.actuation.recorder import Recorder
 from pagd.errors import Status
 from pagd.fem.continuation import LoadPath
 from pagd.fem.linear_solver import PardisoSolver, linear_solver
+from pagd.fem.stability import Critical
 from pagd.mesh.primitives import hollow_block
 
 RISING = np.array([0.0, 10.0, 20.0, 30.0])
@@ -45,6 +46,16 @@ def test_what_is_unstable_at_its_end_buckles() -> None:
     assert reason == (
         "At 30 kPa the equilibrium loses its stability: the actuator buckles. No further step was "
         "found."
+    )
+
+
+def test_what_is_foretold_to_become_unstable_buckles_there() -> None:
+    foretold = replace(path(0.03, "it is unstable", True), critical=Critical(0.0302, True))
+    status, reason = ending(_Followed(foretold), RISING)
+    assert status is Status.buckled
+    assert reason == (
+        "At 30.2 kPa, as its stiffness up to 30 kPa foretells, the equilibrium loses its "
+        "stability: the actuator buckles."
     )
 
 
