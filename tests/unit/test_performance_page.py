@@ -7,14 +7,16 @@ import re
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pagd.errors import InputError
+from pagd.fem.linear_solver import PardisoSolver, linear_solver
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-from performance import cells  # noqa: E402
+from performance import bounds, cells  # noqa: E402
 from performance.options import add_common, command_of, must_be_positive  # noqa: E402
 from performance.origin import origin_lines  # noqa: E402
 from performance.page import (  # noqa: E402
@@ -28,7 +30,7 @@ from performance.page import (  # noqa: E402
 
 PAGE = ROOT / "docs" / "performance.md"
 SECTIONS = (
-    *("profile", "random", "elements", "peers-same-mesh", "peers-equal-error"),
+    *("profile", "bounds", "random", "elements", "peers-same-mesh", "peers-equal-error"),
     *("peers-iteration", "sweep", "unknowns", "chambers", "cores"),
 )
 
@@ -187,3 +189,29 @@ def test_tables_and_paragraphs() -> None:
     lines = wrapped("word " * 60, "  ").split("\n")
     assert max(map(len, lines)) <= 100
     assert lines[1].startswith("  word")
+
+
+def test_bounds_are_the_least_times_over_those_measured() -> None:
+    rates = bounds.Rates(operations=80.0, memory=20.0)
+    one = bounds.Bounds(40_000, 12, 10_000_000, 4.0, 0.1, factorisation_s=0.2, solution_s=0.016)
+    text = bounds.text_of(rates, {"bending": one}, 30.0)
+    assert "at 30 kPa" in text
+    cells = dict(re.findall(r"^\| (.+?) \| (.+?) \|$", text, re.MULTILINE))
+    assert cells["factorisation, GFLOP/s"] == "20.0"
+    assert cells["factorisation, share of the dense product's rate"] == "25%"
+    assert cells["solution, least time over time"] == "50%"
+
+
+@pytest.mark.skipif(
+    not isinstance(linear_solver(), PardisoSolver), reason="MKL exists for x86-64 only"
+)
+def test_operations_of_a_factorisation_are_counted() -> None:
+    """Of a full symmetric matrix n³/3 at least; Pardiso's blocks do some twice."""
+    size = 500
+    rows, columns = np.triu_indices(size)
+    starts = np.searchsorted(rows, np.arange(size + 1)).astype(np.int32)
+    values = np.where(rows == columns, 2.0 * size, 1.0)
+    solver = bounds.CountingSolver()
+    solver.analyse(starts, columns.astype(np.int32))
+    solver.solve(values, np.ones(size))
+    assert 1.0 <= solver.operations / (size**3 / 3 / 1e9) <= 1.5
