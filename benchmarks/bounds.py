@@ -14,9 +14,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from performance.bounds import machine_rates, measured, text_of
 from performance.options import command_of, example_designs, must_be_positive
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish
+from threadpoolctl import threadpool_limits
 
 from pagd.actuation.threads import use_threads
 from pagd.errors import InputError
@@ -28,17 +30,16 @@ def main() -> None:
     """Measure, and print the section or write it to the page."""
     parser = _parser()
     options = parser.parse_args()
-    # Before anything loads MKL.
-    use_threads(1)
-    from performance.bounds import machine_rates, measured, text_of
-
     try:
         must_have_section(options.page, _SECTION)
         must_be_positive({"pressure": options.pressure, "repeats": options.repeats})
-        rates, found = machine_rates(options.repeats), {}
-        for name in options.designs:
-            print(name, file=sys.stderr, flush=True)
-            found[name] = measured(name, options.pressure, options.repeats)
+        # What is loaded by now, and then MKL, which is not.
+        with threadpool_limits(1):
+            use_threads(1)
+            rates, found = machine_rates(options.repeats), {}
+            for name in options.designs:
+                print(name, file=sys.stderr, flush=True)
+                found[name] = measured(name, options.pressure, options.repeats)
         usual = vars(_parser().parse_args([]))
         first = origin_lines(command_of("benchmarks/bounds.py", vars(options), usual))
         publish(options.page, _SECTION, f"{first}\n\n{text_of(rates, found, options.pressure)}")

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_info
 
 from pagd import config as configuration
 from pagd.actuation.body import Body
@@ -24,10 +26,12 @@ from pagd.stages.solve import materials_of
 from performance.options import example_designs
 from performance.page import table, wrapped
 
+Int32Array = NDArray[np.int32]
+
 __all__ = ["Bounds", "CountingSolver", "Rates", "machine_rates", "measured", "text_of"]
 
 # Far beyond every cache: rows of the dense matrices, and numbers that are copied.
-_ROWS, _COPIED = 2400, 30_000_000
+_MATRIX_ROWS, _COPIED = 2400, 30_000_000
 
 _NUMBER = 8  # bytes
 #: Patient, as where walls touch.
@@ -60,8 +64,9 @@ class Bounds:
 class CountingSolver(PardisoSolver):
     """Pardiso, which counts its operations too."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
+        """Take a pattern, and ask for the operations of its factorisation."""
+        super().analyse(starts, columns)
         self._parameters[_OPERATIONS] = -1
 
     @property
@@ -71,14 +76,26 @@ class CountingSolver(PardisoSolver):
 
 
 def machine_rates(repeats: int) -> Rates:
-    """Measure the fastest of some products and copies."""
+    """Measure the fastest of some products and copies, on one core.
+
+    Raises
+    ------
+    InputError
+        If more than one thread multiplies, which would be told as one.
+    """
+    pools = [pool for pool in threadpool_info() if pool["user_api"] == "blas"]
+    if any(pool["num_threads"] > 1 for pool in pools):
+        raise InputError("a rate of one core is wanted, but products of matrices use several.")
     generator = np.random.default_rng(1)
-    a, b = generator.random((2, _ROWS, _ROWS))
+    a, b = generator.random((2, _MATRIX_ROWS, _MATRIX_ROWS))
     product = np.empty_like(a)
     source, target = np.ones(_COPIED), np.empty(_COPIED)
     copy = _fastest(lambda: np.copyto(target, source), repeats)
     return Rates(
-        operations=2 * _ROWS**3 / _fastest(lambda: np.matmul(a, b, out=product), repeats) / 1e9,
+        operations=2
+        * _MATRIX_ROWS**3
+        / _fastest(lambda: np.matmul(a, b, out=product), repeats)
+        / 1e9,
         memory=2 * _NUMBER * _COPIED / copy / 1e9,
     )
 
@@ -124,7 +141,7 @@ def text_of(rates: Rates, found: Mapping[str, Bounds], pressure_kPa: float) -> s
         "faster than its operations at the one rate, nor a solution than the reading of the "
         "factors, forth and back, at the other."
     )
-    rows = [[what, *(show(one, rates) for one in found.values())] for what, show in _ROWS_OF]
+    rows = [[what, *(show(one, rates) for one in found.values())] for what, show in _ROWS]
     return f"{wrapped(introduction)}\n\n{table(['', *found], rows)}"
 
 
@@ -134,7 +151,7 @@ def _read_s(one: Bounds, rates: Rates) -> float:
 
 
 _Row = tuple[str, Callable[[Bounds, Rates], str]]
-_ROWS_OF: tuple[_Row, ...] = (
+_ROWS: tuple[_Row, ...] = (
     ("unknowns", lambda one, _: f"{one.unknowns:,}"),
     ("contact points that touch", lambda one, _: f"{one.touching:,}"),
     ("non-zeros of the factors, millions", lambda one, _: f"{one.factor_nonzeros / 1e6:.1f}"),

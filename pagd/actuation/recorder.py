@@ -71,16 +71,17 @@ class Recorder:
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
+        # Not in the clock's part: what it assembles has a clock of its own.
+        force = self.force(step.state) if self.force else math.nan
         with self.clock.part("states"):
-            return self._note(step)
+            return self._note(step, force)
 
-    def _note(self, step: Step) -> str | None:
+    def _note(self, step: Step, force: float) -> str | None:
         state = self._last = step.state
         pressure, body = state.load / _KPA, self.body
         energy = self._energy(state)
         gap = body.contact.smallest_gap if body.contact else math.inf
         volume = body.volume(state.unknowns)
-        force = self.force(state) if self.force else math.nan
         self._rows.append((pressure, volume, energy, step.iterations, gap, force))
         if step.wanted or self._has_grown():
             self.record_last()
