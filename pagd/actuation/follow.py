@@ -194,6 +194,7 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
         "element": body.element,
         "unknowns": len(assembly.free),
         "newton_iterations": path.iterations,
+        "factorisations": solver.factorisations,
         "corrections": path.corrections,
         "steps": path.steps,
         "rejected_steps": path.rejected,

@@ -58,10 +58,10 @@ class ActuationResult:
         ``recorded`` (the k-th true row is the k-th state), ``smallest_gap_mm`` between walls
         (not a number where none are near); where the tip is held ``blocked_force_N``.
     figures
-        Counts: ``tets``, ``unknowns``, ``newton_iterations`` (factorisations), ``corrections``
-        (solutions), ``steps``, ``rejected_steps``; ``element``; ``profile_s``, processor time by
-        part; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the whole actuator;
-        ``linear_solver``;
+        Counts: ``tets``, ``unknowns``, ``newton_iterations``, ``factorisations`` (those that tell
+        of stability too), ``corrections`` (solutions), ``steps``, ``rejected_steps``; ``element``;
+        ``profile_s``, processor time by part; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the
+        whole actuator; ``linear_solver``;
         ``largest_pressure_kPa`` and ``limit_points``, its maxima along the path, and
         ``volume_controlled_from_kPa`` where pressure control failed, ``critical_pressure_kPa``
         where stability is foretold to be lost; where walls face each

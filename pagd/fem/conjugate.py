@@ -94,7 +94,7 @@ class ConjugatePath:
                 rejections += 1
                 step = control.retry_step(taken, correction, count, rejections)
                 path = failed(path, result)
-                if step < smallest:
+                if step <= smallest:
                     return replace(path, failure=result.reason or UNSTABLE)
                 continue
             point = _Point(result.state, self._term.conjugate(result.state.unknowns)[0])
@@ -146,12 +146,17 @@ class ConjugatePath:
             guess = interpolate(ends, [s.load for s in ends], load)
             result = self._newton.solve(guess)
             path = tried(path, result)
-            if result.state is not None:
-                break
+            if result.state is not None and self._lies_between(before, result.state, after):
+                return path, result
             middle = self._try([before, after], (before.conjugate + after.conjugate) / 2)
             path = tried(path, middle)
             if middle.state is None:
                 break
             point = _Point(middle.state, (before.conjugate + after.conjugate) / 2)
             before, after = (point, after) if point.state.load < load else (before, point)
-        return path, result
+        return path, replace(result, state=None)
+
+    def _lies_between(self, before: _Point, state: State, after: _Point) -> bool:
+        """Whether a state is of the branch between two points, and not of one before or beyond."""
+        conjugate = self._term.conjugate(state.unknowns)[0]
+        return before.conjugate <= conjugate <= after.conjugate

@@ -108,8 +108,8 @@ class LoadPath:
     ``stopped`` is what the observer gave as its reason, ``failure`` why no further
     step converged; both are empty where the last load was reached. ``is_unstable`` tells that
     the equilibrium of the last step, or of a try beyond it, is unstable under the load.
-    ``iterations`` counts the factorisations, ``corrections`` all corrections. ``critical`` is where
-    stability is lost, if that is foretold.
+    ``iterations`` counts those of Newton's method, ``corrections`` all corrections. ``critical`` is
+    where stability is lost, if that is foretold.
     """
 
     load: float
@@ -209,15 +209,9 @@ class Continuation:
             taken = load - before.load
             if state is None:
                 rejections += 1
-                step = control.retry_step(taken, correction, known, rejections)
-                critical = self._critical_before(load, result)
-                if critical is not None:
-                    if critical - before.load <= control.foresight * critical:
-                        return self._ended_unstable(path)
-                    step = min(step, _APPROACH * (critical - before.load))
-                if step < control.smallest or rejections > control.patience:
-                    return replace(path, failure=path.failure or result.reason or UNSTABLE)
-                path = replace(path, failure="")
+                path, step = self._retry(path, load, result, known, rejections)
+                if path.failure:
+                    return path
                 continue
             path, rejections = longer(path, load, result), 0
             lands = bool(load in wanted)
@@ -232,10 +226,33 @@ class Continuation:
             step = max(step, following) if following > taken else following
         return path
 
-    def _critical_before(self, load: float, result: NewtonResult) -> float | None:
+    def _retry(
+        self, path: LoadPath, load: float, result: NewtonResult, known: int, rejections: int
+    ) -> tuple[LoadPath, float]:
+        """The path and the next step after the last of ``rejections`` tries in vain, at ``load``.
+
+        The path has a ``failure`` where there is to be no other try.
+        """
+        control, last = self._control, self.states[-1].load
+        correction = result.corrections[0] if result.corrections else math.inf
+        step = control.retry_step(load - last, correction, known, rejections)
+        given_up = step < control.smallest or rejections > control.patience
+        # A first guess far off is told at once and costs less than foretelling.
+        is_dear = result.iterations > 1
+        critical = self._critical_before(load) if is_dear or given_up else None
+        if critical is not None:
+            left = critical - last
+            step = min(step, _APPROACH * left)
+            near = left <= control.foresight * critical
+            if near or given_up or step < control.smallest:
+                return self._ended_unstable(path), step
+        if given_up:
+            return replace(path, failure=path.failure or result.reason or UNSTABLE), step
+        return replace(path, failure=""), step
+
+    def _critical_before(self, load: float) -> float | None:
         """Where stability is lost before a load that was tried in vain; none if it is not."""
-        if not self._control.foresight or result.iterations < 2:
-            # A first guess far off is told at once and costs less than foretelling.
+        if not self._control.foresight:
             return None
         found = self._watch.critical_load(self.states)
         return found if found is not None and found <= load else None

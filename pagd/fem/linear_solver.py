@@ -35,6 +35,9 @@ class LinearSolver(Protocol):
     clock: Clock
     """Where its time goes: ``analysis``, ``factorisation``, ``solution``."""
 
+    factorisations: int
+    """How many there have been."""
+
     @property
     def negative_pivots(self) -> int | None:
         """Negative pivots of the matrix factorised last; none where the solver cannot tell.
@@ -134,7 +137,7 @@ class PardisoSolver:
     _RELEASE, _ANALYSE, _FACTORISE, _SOLVE = -1, 11, 22, 33
 
     def __init__(self) -> None:
-        self.clock = Clock()
+        self.clock, self.factorisations = Clock(), 0
         self._call = _pardiso_entry_point()
         self._handle = np.zeros(64, np.int64)
         self._parameters = np.zeros(64, np.int32)
@@ -189,6 +192,7 @@ class PardisoSolver:
             self._analysed = True
         with self.clock.part("factorisation"):
             self._phase(self._FACTORISE, values, right)
+        self.factorisations += 1
         self._values = values
         return self.solve_again(right)
 
@@ -238,7 +242,7 @@ class SuperLUSolver:
     factor_nonzeros: int | None = None
 
     def __init__(self) -> None:
-        self.clock = Clock()
+        self.clock, self.factorisations = Clock(), 0
         self._starts = self._columns = np.zeros(0, np.int32)
         self._factors: Any = None
 
@@ -260,6 +264,7 @@ class SuperLUSolver:
                 self._factors = splu(full, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01)
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from None
+        self.factorisations += 1
         return self.solve_again(right)
 
     def solve_again(self, right: FloatArray) -> FloatArray:

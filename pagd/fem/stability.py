@@ -25,8 +25,8 @@ Flexibility = Callable[[FloatArray], FloatArray]
 
 # Modes change places on the way: more than the smallest are followed, but no more than this.
 _MODES = 2
-# Relative tolerance of the eigenvalues; vectors that ARPACK keeps.
-_TOLERANCE, _VECTORS = 1e-2, 10
+# Relative tolerance of the eigenvalues; vectors that ARPACK keeps, and its restarts at most.
+_TOLERANCE, _VECTORS, _RESTARTS = 1e-2, 10, 20
 
 # Stability is lost under the conjugate too if it is foretold so for no more than this load.
 _ALIKE = 1.1
@@ -75,10 +75,11 @@ class StabilityWatch:
 def smallest_stiffness(
     newton: Newton, state: State, under_conjugate: bool = False
 ) -> FloatArray | None:
-    """The smallest stiffnesses of an equilibrium, eigenvalues (2,) in N/mm, smallest first.
+    """The smallest stiffnesses of an equilibrium, eigenvalues (modes,) in N/mm, smallest first.
 
-    None where they are not to be had. Nodes have no masses here: from mesh to mesh the figures
-    differ, and only their course along a path tells something.
+    Two modes, or one of a body that has no more. None where they are not to be had or one of them
+    is negative: what is unstable already has nothing to lose. Nodes have no masses here: from mesh
+    to mesh the figures differ, and only their course along a path tells something.
 
     Parameters
     ----------
@@ -97,9 +98,10 @@ def smallest_stiffness(
         if under_conjugate and newton.load_term is not None:
             slopes = newton.load_term.conjugate(state.unknowns)[1][newton.assembly.free[:size]]
             flexibility = _without_load(flexibility, slopes)
-        return _smallest(flexibility, size)
+        found = _smallest(flexibility, size)
     except (ArpackError, SingularMatrixError):
         return None
+    return found if len(found) and found[0] > 0 else None
 
 
 def critical_load(loads: Sequence[float], stiffnesses: Sequence[FloatArray | None]) -> float | None:
@@ -139,6 +141,9 @@ def _without_load(flexibility: Flexibility, slopes: FloatArray) -> Flexibility:
     """A flexibility that keeps the conjugate, whose ``slopes`` (n,) these are."""
     by_load = flexibility(slopes)
     growth = float(slopes @ by_load)
+    if not growth:
+        # Nothing that is free changes the conjugate.
+        return flexibility
     return lambda forces: flexibility(forces) - by_load * (float(by_load @ forces) / growth)
 
 
@@ -147,12 +152,15 @@ def _smallest(flexibility: Flexibility, size: int) -> FloatArray:
     from scipy.sparse.linalg import LinearOperator, eigsh
 
     modes = min(_MODES, size - 1)
+    if not modes:
+        return np.zeros(0)
     flexibilities = eigsh(
         LinearOperator((size, size), matvec=flexibility, dtype=np.float64),
         k=modes,
-        which="LA",
+        which="LM",
         ncv=min(_VECTORS, size),
         tol=_TOLERANCE,
+        maxiter=_RESTARTS,
         v0=np.ones(size),
         return_eigenvectors=False,
     )

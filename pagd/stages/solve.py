@@ -179,6 +179,7 @@ _HELD_FIGURES = (
     "blocked_force_N",
     "pressure_kPa",
     "newton_iterations",
+    "factorisations",
     "corrections",
     "steps",
     "rejected_steps",

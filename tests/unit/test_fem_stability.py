@@ -6,14 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fem_checks import PAPER, elastomer
+from scipy.sparse import csr_array
 from test_fem_conjugate import CONTROL, FIRST_LIMIT, Balloon, Column, force
 
+from pagd.actuation import Actuation, Body
 from pagd.fem.assembly import Assembly, State
 from pagd.fem.continuation import Continuation, LoadPath
-from pagd.fem.linear_solver import SuperLUSolver
+from pagd.fem.linear_solver import SuperLUSolver, linear_solver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.stability import StabilityWatch, critical_load, smallest_stiffness
 from pagd.fem.term import NO_INTERNAL
+from pagd.mesh.primitives import hollow_block
 
 LIMIT = float(force(FIRST_LIMIT))
 
@@ -103,3 +107,80 @@ def test_what_is_foretold_saves_tries_beyond_it() -> None:
     assert 0.98 * LIMIT < foreseeing.load < LIMIT
     assert foreseeing.rejected < blind.rejected
     assert blind.critical is None
+
+
+def actuator(solver: str, element: str = "taylor_hood") -> tuple[Body, Newton]:
+    """A hollow beam over a sheet, half of it, clamped."""
+    mesh = hollow_block((24.0, 3.0, 6.0), (4, 2, 4), ((1, 3), (0, 1), (1, 3)), 1, True)
+    material = elastomer("yeoh", C10=0.11, C20=0.02)
+    body = Body(mesh, material, PAPER, Actuation(element=element))
+    method = linear_solver(solver)
+    return body, Newton(body.assembly(), method, 3 * body.nodes, load_term=body.pressure)
+
+
+def dense(newton: Newton, state: State) -> np.ndarray:
+    """The stiffness of the free displacements, multipliers eliminated."""
+    assembly = newton.assembly
+    assembly.look_around(state)
+    _, _, values = assembly.linearize(state)
+    size = len(assembly.free)
+    pattern = assembly.pattern
+    upper = csr_array((values, pattern.columns, pattern.starts), shape=(size, size)).toarray()
+    whole = np.triu(upper) + np.triu(upper, 1).T
+    free = int((assembly.free < newton.displacements).sum())
+    a, b, c = whole[:free, :free], whole[:free, free:], whole[free:, free:]
+    return a - b @ np.linalg.solve(c, b.T) if c.size else a
+
+
+@pytest.mark.parametrize("solver", ["auto", "superlu"])
+@pytest.mark.parametrize("element", ["taylor_hood", "element_pressure"])
+def test_of_an_actuator_the_two_smallest_ones(solver: str, element: str) -> None:
+    body, method = actuator(solver, element)
+    state = method.assembly.at_rest()
+    stiffness = dense(method, state)
+    exact = np.linalg.eigvalsh(stiffness)[:2]
+    assert smallest_stiffness(method, state) == pytest.approx(exact, rel=0.01)
+    free = method.assembly.free[: len(stiffness)]
+    slopes = body.pressure.conjugate(state.unknowns)[1][free]
+    keeps = np.linalg.svd(slopes[None, :])[2][1:].T
+    held = np.linalg.eigvalsh(keeps.T @ stiffness @ keeps)[:2]
+    found = smallest_stiffness(method, state, under_conjugate=True)
+    assert found == pytest.approx(held, rel=0.01)
+    assert held[0] > exact[0]
+
+
+def test_a_state_that_is_known_is_not_factorised_again() -> None:
+    method = newton(Balloon())
+    watch, states = StabilityWatch(method), [stretched(place) for place in (0.4, 0.5, 0.55)]
+    counts = []
+    for last in (2, 2, 3):
+        watch.critical_load(states[:last])
+        counts.append(method.solver.factorisations)
+    assert counts == [2, 2, 3]
+
+
+def test_without_a_conjugate_there_is_nothing_to_hold() -> None:
+    method = newton(Balloon())
+    method.load_term = None
+    found = StabilityWatch(method).critical([stretched(0.4), stretched(0.5)])
+    assert found is not None
+    assert not found.under_conjugate
+
+
+def test_what_cannot_move_has_no_stiffness() -> None:
+    settings = NewtonSettings(tolerance=1e-9)
+    assembly = Assembly([Balloon()], 2, np.array([False, True]))
+    method = Newton(assembly, SuperLUSolver(), 2, settings, load_term=Balloon())
+    assert smallest_stiffness(method, stretched(0.5)) is None
+
+
+def test_beyond_the_limit_the_stiffness_is_not_told() -> None:
+    assert smallest_stiffness(newton(Balloon()), stretched(1.0)) is None
+
+
+def test_what_is_foretold_is_told_where_steps_become_too_small() -> None:
+    control = replace(CONTROL, first=0.2, smallest=0.05, growth=1.0, foresight=1e-6, patience=20)
+    path = Continuation(newton(Balloon()), control).follow([2 * LIMIT], lambda step: None)
+    assert path.is_unstable
+    assert path.critical is not None
+    assert path.critical.load == pytest.approx(LIMIT, rel=0.05)
