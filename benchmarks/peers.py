@@ -1,10 +1,15 @@
 """pagd beside other programs: CalculiX, FElupe and NGSolve.
 
-    python benchmarks/peers.py converged [--designs bending twisting] [--blocks 3 2 1.6 1.3] …
-    python benchmarks/peers.py same-mesh [--designs bending twisting] [--sizes 5 3] …
-    python benchmarks/peers.py equal-error [--finer 4 3 2.5 2 1.5] …
-    python benchmarks/peers.py calculix …
-    python benchmarks/peers.py iteration [--size 5] [--threads 1 2] …
+    python benchmarks/peers.py converged [--blocks 3 2 1.6 1.3] [--order P] [ANALYSES]
+    python benchmarks/peers.py same-mesh [--sizes 5 3] [--blocks 6] [--page …] [ANALYSES]
+    python benchmarks/peers.py equal-error [--finer 4 3 2.5 2 1.5] [--page …] [ANALYSES]
+    python benchmarks/peers.py calculix [--finer …] [--page …] [ANALYSES]
+    python benchmarks/peers.py iteration [--design bending] [--size 5] [--threads 1 2]
+        [--pressure 0.25] [--iterations 10] [--repeats 3] [--page …]
+
+where ANALYSES are [--designs bending twisting] [--mesher gmsh structured] [--element NAME]
+[--half-model] [--threads 2] [--maximum-pressure 50] [--time-limit 3600] [--repeats 3], and all
+commands know [--results FOLDER] [--fresh] [--out JSON]; ``--help`` after any of them says more.
 
 ``converged`` extrapolates the tip over finer meshes: the errors of the others are measured against
 it. ``same-mesh`` runs pagd and CalculiX on the same meshes, ``equal-error`` runs CalculiX on finer

@@ -15,7 +15,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from performance.options import command_of, must_be_positive
+from performance.options import command_of, must_be_positive, must_not_be_negative
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish
 from robustness.drawing import drawn_designs
@@ -37,6 +37,7 @@ def main() -> None:
     try:
         must_have_section(options.page, _SECTION)
         must_be_positive({"designs": options.designs, "cores": options.cores})
+        must_not_be_negative({"seed": options.seed, "dry-run-designs": options.dry_run_designs})
         config = configuration.load(options.config or str(ROOT / "config" / "config.yaml"))
         text, commits = _measured(options, config)
         usual = vars(_parser().parse_args([]))

@@ -20,14 +20,14 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
+from performance.options import command_of, example_designs
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish, table, wrapped
 
-from pagd.catalogue import NamedDesign, read_designs
+from pagd.catalogue import NamedDesign
 from pagd.errors import InputError
 from pagd.record import Record, read_record
 
-_ROOT = Path(__file__).parents[1]
 _SECTION = "profile"
 _STAGES = ("geometry", "repair", "mesh", "solve", "metrics")
 #: Parts of an analysis, as the records name them, and what they are.
@@ -53,19 +53,24 @@ class _Run(NamedTuple):
 
 def main() -> None:
     """Run the designs, print the table or write it to the page."""
-    parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("--designs", nargs="+", default=["bending", "twisting", "mixed"])
-    parser.add_argument("--page", type=Path)
+    parser = _parser()
     options = parser.parse_args()
     try:
         must_have_section(options.page, _SECTION)
-        known = read_designs({"table2": str(_ROOT / "config" / "table2.csv")})
-        unknown = [name for name in options.designs if name not in known]
-        if unknown:
-            raise InputError(f"designs = {unknown[0]}: must be of {', '.join(known)}.")
-        publish(options.page, _SECTION, _section([known[name] for name in options.designs]))
+        known, usual = example_designs(), vars(_parser().parse_args([]))
+        command = command_of("benchmarks/where_time_goes.py", vars(options), usual)
+        text = _section([known[name] for name in options.designs])
+        publish(options.page, _SECTION, f"{origin_lines(command)}\n\n{text}")
     except InputError as error:
         parser.error(str(error))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    names, usual = list(example_designs()), ["bending", "twisting", "mixed"]
+    parser.add_argument("--designs", nargs="+", choices=names, default=usual, help="of Table 2")
+    parser.add_argument("--page", type=Path, help="page whose section is replaced")
+    return parser
 
 
 def _section(designs: list[NamedDesign]) -> str:
@@ -73,15 +78,14 @@ def _section(designs: list[NamedDesign]) -> str:
         cache = Path(folder, "cache")
         cold = _all_stages(designs[0], Path(folder, "cold"), cache)
         runs = {d.name: _all_stages(d, Path(folder, d.name), cache) for d in designs}
-    names = " ".join(runs)
     first = sum(cold.wall.values()) - sum(runs[designs[0].name].wall.values())
     text = wrapped(
         f"Processor seconds of the designs of Table 2, free actuation and blocked force, one "
-        f"thread. Before kernels are compiled the first design takes {first:.0f} s more (wall "
-        "time), once on a machine."
+        f"thread. Every stage is a process here, as in the workflow; each imports what it needs, "
+        "which a process that does all stages would do once. Before kernels are compiled the first "
+        f"design takes {first:.0f} s more (wall time), once on a machine."
     )
-    origin = origin_lines(f"python benchmarks/where_time_goes.py --designs {names}")
-    return f"{origin}\n\n{text}\n\n{_table(runs)}"
+    return f"{text}\n\n{_table(runs)}"
 
 
 def _all_stages(design: NamedDesign, out: Path, cache: Path) -> _Run:
@@ -101,7 +105,12 @@ def _all_stages(design: NamedDesign, out: Path, cache: Path) -> _Run:
         print(f"{design.name}: {stage}", file=sys.stderr)
         command = [sys.executable, "-m", "pagd", stage, *words[stage], "--keep-going"]
         start = time.perf_counter()
-        subprocess.run([*command, "--out", at[stage]], env=env, check=True, capture_output=True)
+        done = subprocess.run(
+            [*command, "--out", at[stage]], env=env, check=False, capture_output=True, text=True
+        )
+        if done.returncode:
+            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            raise InputError(f"--designs: the stage {stage} of {design.name} failed: {last}")
         wall[stage] = time.perf_counter() - start
     return _Run({stage: read_record(out / stage) for stage in _STAGES}, wall)
 

@@ -22,10 +22,11 @@ __all__ = [
     "free_config",
     "measured_in",
     "must_be_positive",
+    "must_not_be_negative",
 ]
 
 #: Options that say how a command is run and not what it prints.
-_OF_THE_RUN = ("out", "time_limit", "anew", "report")
+_OF_THE_RUN = ("out", "time_limit", "anew")
 
 
 def add_common(parser: argparse.ArgumentParser) -> None:
@@ -124,3 +125,10 @@ def free_config(
 
 def _text(value: Any) -> str:
     return shlex.quote(f"{value:.12g}" if isinstance(value, float) else str(value))
+
+
+def must_not_be_negative(numbers: Mapping[str, float]) -> None:
+    """Refuse options, by name, that are less than 0, in one sentence (``InputError``)."""
+    for name, number in numbers.items():
+        if not number >= 0:
+            raise InputError(f"--{name} = {number:g} must be at least 0.")
