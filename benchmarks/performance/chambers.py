@@ -45,7 +45,6 @@ def text_of(series: Series, design: str, size_mm: float, pressure_kPa: float) ->
 def powers_of(series: Series) -> dict[str, float]:
     """Return the power of each cost in the number of chambers, as far as it is known."""
     complete = {number: one.figures for number, one in series.items() if one.is_complete}
-    each = [per_iteration(figures) for figures in complete.values()]
     costs = {
         "unknowns": [figures["unknowns"] for figures in complete.values()],
         "time of the analysis by iterations": [
