@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -33,11 +34,8 @@ _PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0, "contraction": 0.55
 # Largest factor from one step to the next: rows of chambers have smooth paths until walls touch.
 _GROWTH = 5.0
 
-# Steps of the volume that hardly lead on end at so much of the last ones of the pressure.
-_SMALLEST_HURRIED = 0.1
-
-# Followed is as near as this share of the pressure to where the actuator is foretold to buckle.
-_FORESIGHT = 0.01
+# So near, as a share of the pressure, a held tip is followed to where it buckles.
+_RESOLUTION = 0.01
 
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
@@ -95,34 +93,32 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
         growth=_GROWTH,
         # Between states a force is known far worse than the displacements: walls are stiff.
         dense=recorder.force is None,
-        foresight=_FORESIGHT,
+        foresight=_RESOLUTION,
+        resolution=_RESOLUTION if recorder.force is not None else 0.0,
     )
     pressures = list(actuation.recorded_kPa() * _KPA)
     continuation = Continuation(newton, control)
     path = continuation.follow(pressures, recorder, start)
-    if not path.failure or len(continuation.states) < 2:
-        return _Followed(path)
-    if path.critical is not None and path.critical.under_conjugate:
-        # No more would a rising volume lead on.
+    if not path.failure or len(continuation.states) < 2 or not _may_go_on(path, recorder):
         return _Followed(path)
     left = [pressure for pressure in pressures if pressure > path.load]
-    hurried = recorder.force is not None and path.critical is None
-    volumes = _volumes(newton, control, hurried)
+    # Limit points are where steps have to be small.
+    careful = replace(control, growth=StepControl().growth, retry_again=control.retry)
+    volumes = ConjugatePath(newton, careful)
     further = volumes.follow(continuation.states, left, recorder, path)
     if further.steps == path.steps:
         return _Followed(further)
     return _Followed(further, path.load / _KPA)
 
 
-def _volumes(newton: Newton, control: StepControl, hurried: bool) -> ConjugatePath:
-    """Control of the volume: limit points are where steps have to be small.
+def _may_go_on(path: LoadPath, recorder: Recorder) -> bool:
+    """Whether a rising volume may lead on where a rising pressure does not.
 
-    ``hurried`` where no limit point is foretold and the tip is held: few steps lead on from there.
+    Past a limit point it does. With a held tip, nothing else of that kind has been seen.
     """
-    control = replace(control, growth=StepControl().growth)
-    if hurried:
-        return ConjugatePath(newton, control, smallest_share=_SMALLEST_HURRIED)
-    return ConjugatePath(newton, replace(control, retry_again=control.retry))
+    if path.critical is not None:
+        return not path.critical.under_conjugate
+    return recorder.force is None
 
 
 def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | None]:
@@ -172,6 +168,11 @@ def _ending(
             f"At {path.critical.load / _KPA:.4g} kPa, as its stiffness up to "
             f"{path.load / _KPA:.4g} kPa foretells, the equilibrium loses its stability: the "
             "actuator buckles."
+        )
+    if path.unstable_load < math.inf:
+        return Status.buckled, (
+            f"Between {path.load / _KPA:.4g} and {path.unstable_load / _KPA:.4g} kPa the "
+            "equilibrium loses its stability: the actuator buckles."
         )
     if path.is_unstable:
         reason = f"At {highest:.4g} kPa the equilibrium loses its stability: the actuator buckles"

@@ -49,6 +49,10 @@ class StepControl:
         How near, as a share of the load, a path is followed to where it is foretold to lose its
         stability (see :mod:`pagd.fem.stability`) once a try beyond that has failed; 0: foretell
         nothing.
+    resolution
+        How near, as a share of the load, a path comes to a load that is tried in vain: that is
+        tried again from nearer and nearer states, and the last time from so near. 0: other, higher
+        loads are tried, up to the ``patience``.
     """
 
     first: float = 2.5e-4
@@ -63,6 +67,7 @@ class StepControl:
     patience: int = 20
     dense: bool = False
     foresight: float = 0.0
+    resolution: float = 0.0
 
     def next_step(self, taken: float, first_correction: float, states: int) -> float:
         """The step after one that converged from a guess through ``states`` states."""
@@ -109,7 +114,8 @@ class LoadPath:
     step converged; both are empty where the last load was reached. ``is_unstable`` tells that
     the equilibrium of the last step, or of a try beyond it, is unstable under the load.
     ``iterations`` counts those of Newton's method, ``corrections`` all corrections. ``critical`` is
-    where stability is lost, if that is foretold.
+    where stability is lost, if that is foretold, and ``unstable_load`` the lowest one beyond the
+    last step where a try has led to an unstable equilibrium.
     """
 
     load: float
@@ -121,6 +127,7 @@ class LoadPath:
     is_unstable: bool = False
     corrections: int = 0
     critical: Critical | None = None
+    unstable_load: float = math.inf
 
 
 #: Why a path ends where Newton's method converged, but on states that nothing rests in.
@@ -145,16 +152,22 @@ def tried(path: LoadPath, result: NewtonResult) -> LoadPath:
     )
 
 
-def failed(path: LoadPath, result: NewtonResult) -> LoadPath:
-    """A path after one more try that led nowhere."""
-    unstable = path.is_unstable or result.unstable_directions > 0
-    return replace(path, rejected=path.rejected + 1, is_unstable=unstable)
+def failed(path: LoadPath, result: NewtonResult, load: float = math.inf) -> LoadPath:
+    """A path after one more try that led nowhere, at ``load`` if that was given."""
+    path = replace(path, rejected=path.rejected + 1)
+    if result.unstable_directions <= 0:
+        return path
+    return replace(path, is_unstable=True, unstable_load=min(path.unstable_load, load))
 
 
 def longer(path: LoadPath, load: float, result: NewtonResult) -> LoadPath:
     """A path after one more step."""
-    unstable = result.unstable_directions > 0
-    return replace(path, load=load, steps=path.steps + 1, is_unstable=unstable)
+    # An unstable equilibrium is still ahead, or it was of another branch.
+    beyond = path.unstable_load if load < path.unstable_load < math.inf else math.inf
+    unstable = result.unstable_directions > 0 or beyond < math.inf
+    return replace(
+        path, load=load, steps=path.steps + 1, is_unstable=unstable, unstable_load=beyond
+    )
 
 
 class Continuation:
@@ -179,6 +192,7 @@ class Continuation:
         #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
         self._touches = False
+        self._in_vain = math.inf
         self._watch = StabilityWatch(newton)
 
     def follow(
@@ -191,7 +205,7 @@ class Continuation:
         """
         control, wanted = self._control, list(loads)
         path = LoadPath(0.0, 0, 0, 0)
-        self.states = [start or self._newton.assembly.at_rest()]
+        self.states, self._in_vain = [start or self._newton.assembly.at_rest()], math.inf
         step, rejections = control.first, 0
         while wanted:
             known, before = self._known(), self.states[-1]
@@ -202,7 +216,7 @@ class Continuation:
             between: list[Step] = []
             state = result.state
             if state is None or result.is_unstable:
-                path, state = failed(path, result), None
+                path, state = failed(path, result, load), None
             else:
                 path, found = self._pass_over(state, wanted, path)
                 state, between = (None, []) if found is None else (state, found)
@@ -214,6 +228,7 @@ class Continuation:
                     return path
                 continue
             path, rejections = longer(path, load, result), 0
+            self._in_vain = self._in_vain if load < self._in_vain else math.inf
             lands = bool(load in wanted)
             for reached in (*between, Step(state, result.iterations, lands)):
                 self._newton.assembly.look_around(reached.state)
@@ -236,7 +251,10 @@ class Continuation:
         control, last = self._control, self.states[-1].load
         correction = result.corrections[0] if result.corrections else math.inf
         step = control.retry_step(load - last, correction, known, rejections)
-        given_up = step < control.smallest or rejections > control.patience
+        fine = load - last <= control.resolution * load
+        if result.iterations > 1:
+            self._in_vain = min(self._in_vain, load)
+        given_up = fine or step < control.smallest or rejections > control.patience
         # A first guess far off is told at once and costs less than foretelling.
         is_dear = result.iterations > 1
         critical = self._critical_before(load) if is_dear or given_up else None
@@ -263,6 +281,10 @@ class Continuation:
 
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
         """The load after a step; the way to a load to land on is divided evenly."""
+        resolution, last, in_vain = self._control.resolution, self.states[-1].load, self._in_vain
+        if resolution and last + step > in_vain:
+            is_near = in_vain - last <= 2 * resolution * in_vain
+            return in_vain if is_near else (last + in_vain) / 2
         passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)

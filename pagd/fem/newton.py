@@ -185,6 +185,9 @@ class Newton:
         if again.state is not None and not again.is_unstable:
             self._has_failed = False
             self._plain_solves, self._back_off = self._back_off, 2 * self._back_off
+        elif again.state is None:
+            # The other did find a state, one that nothing rests in.
+            again = replace(again, unstable_directions=result.unstable_directions)
         return replace(
             again,
             iterations=again.iterations + result.iterations,

@@ -23,10 +23,10 @@ from pagd.fem.newton import Newton
 FloatArray = NDArray[np.float64]
 Flexibility = Callable[[FloatArray], FloatArray]
 
-# Modes change places on the way: more than the smallest are followed, but no more than this.
-_MODES = 2
+# Modes change places on the way: so many of the smallest are followed.
+_MODES = 3
 # Relative tolerance of the eigenvalues; vectors that ARPACK keeps, and its restarts at most.
-_TOLERANCE, _VECTORS, _RESTARTS = 1e-2, 10, 20
+_TOLERANCE, _VECTORS, _RESTARTS = 1e-2, 12, 20
 
 # Stability is lost under the conjugate too if it is foretold so for no more than this load.
 _ALIKE = 1.1
@@ -77,7 +77,7 @@ def smallest_stiffness(
 ) -> FloatArray | None:
     """The smallest stiffnesses of an equilibrium, eigenvalues (modes,) in N/mm, smallest first.
 
-    Two modes, or one of a body that has no more. None where they are not to be had or one of them
+    Three modes, or what a body has of them. None where they are not to be had or one of them
     is negative: what is unstable already has nothing to lose. Nodes have no masses here: from mesh
     to mesh the figures differ, and only their course along a path tells something.
 

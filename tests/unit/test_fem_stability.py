@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +14,9 @@ from test_fem_conjugate import CONTROL, FIRST_LIMIT, Balloon, Column, force
 
 from pagd.actuation import Actuation, Body
 from pagd.fem.assembly import Assembly, State
-from pagd.fem.continuation import Continuation, LoadPath
+from pagd.fem.continuation import Continuation, LoadPath, failed, longer
 from pagd.fem.linear_solver import SuperLUSolver, linear_solver
-from pagd.fem.newton import Newton, NewtonSettings
+from pagd.fem.newton import Newton, NewtonResult, NewtonSettings
 from pagd.fem.stability import StabilityWatch, critical_load, smallest_stiffness
 from pagd.fem.term import NO_INTERNAL
 from pagd.mesh.primitives import hollow_block
@@ -134,16 +136,16 @@ def dense(newton: Newton, state: State) -> np.ndarray:
 
 @pytest.mark.parametrize("solver", ["auto", "superlu"])
 @pytest.mark.parametrize("element", ["taylor_hood", "element_pressure"])
-def test_of_an_actuator_the_two_smallest_ones(solver: str, element: str) -> None:
+def test_of_an_actuator_the_three_smallest_ones(solver: str, element: str) -> None:
     body, method = actuator(solver, element)
     state = method.assembly.at_rest()
     stiffness = dense(method, state)
-    exact = np.linalg.eigvalsh(stiffness)[:2]
+    exact = np.linalg.eigvalsh(stiffness)[:3]
     assert smallest_stiffness(method, state) == pytest.approx(exact, rel=0.01)
     free = method.assembly.free[: len(stiffness)]
     slopes = body.pressure.conjugate(state.unknowns)[1][free]
     keeps = np.linalg.svd(slopes[None, :])[2][1:].T
-    held = np.linalg.eigvalsh(keeps.T @ stiffness @ keeps)[:2]
+    held = np.linalg.eigvalsh(keeps.T @ stiffness @ keeps)[:3]
     found = smallest_stiffness(method, state, under_conjugate=True)
     assert found == pytest.approx(held, rel=0.01)
     assert held[0] > exact[0]
@@ -184,3 +186,35 @@ def test_what_is_foretold_is_told_where_steps_become_too_small() -> None:
     assert path.is_unstable
     assert path.critical is not None
     assert path.critical.load == pytest.approx(LIMIT, rel=0.05)
+
+
+def test_a_load_tried_in_vain_is_come_near_to() -> None:
+    """The last try goes by one percent, and none beyond what has failed before."""
+    tried = []
+
+    class Listening(Newton):
+        def solve(self, guess: State, *args: Any, **more: Any) -> NewtonResult:
+            tried.append(guess.load)
+            return super().solve(guess, *args, **more)
+
+    method = newton(Balloon())
+    listening = Listening(method.assembly, method.solver, 2, method.settings)
+    control = replace(CONTROL, first=0.2, resolution=0.01, patience=20)
+    path = Continuation(listening, control).follow([2 * LIMIT], lambda step: None)
+    assert path.failure
+    assert 0.98 * LIMIT < path.load < LIMIT
+    failed = min(load for load in tried if load > LIMIT)
+    assert failed - path.load <= 0.01 * failed
+    highest = np.minimum.accumulate([load if load > LIMIT else np.inf for load in tried])
+    assert all(b <= a for a, b in pairwise(highest))
+
+
+def test_an_unstable_equilibrium_ahead_is_remembered_until_it_is_passed() -> None:
+    stable = NewtonResult(stretched(0.5), 1, (0.1,))
+    unstable = replace(stable, unstable_directions=1, is_unstable=True)
+    path = failed(LoadPath(1.0, 1, 1, 0), unstable, 3.0)
+    assert (path.is_unstable, path.unstable_load) == (True, 3.0)
+    nearer = longer(path, 2.0, stable)
+    assert (nearer.is_unstable, nearer.unstable_load) == (True, 3.0)
+    passed = longer(path, 3.0, stable)
+    assert (passed.is_unstable, passed.unstable_load) == (False, np.inf)

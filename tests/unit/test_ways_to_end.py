@@ -59,6 +59,15 @@ def test_what_is_foretold_to_become_unstable_buckles_there() -> None:
     )
 
 
+def test_an_unstable_equilibrium_ahead_is_named() -> None:
+    found = replace(path(0.03, "it is unstable", True), unstable_load=0.032)
+    status, reason = ending(_Followed(found), RISING)
+    assert status is Status.buckled
+    assert reason == (
+        "Between 30 and 32 kPa the equilibrium loses its stability: the actuator buckles."
+    )
+
+
 def test_where_the_pressure_fell_before_the_limit_point_is_named() -> None:
     status, reason = ending(_Followed(path(0.022, "corrections grow", True), 29.5), FALLING)
     assert status is Status.buckled
