@@ -33,6 +33,7 @@ class _Row:
 _ROWS: Final = (
     _Row("free actuation with all around it, core-s", "without_blocked_cpu_s", median=8, p90=25),
     _Row("free actuation alone, core-s", "free_cpu_s"),
+    _Row("iterations a step of the free actuation", "free_iterations_a_step", 2, median=3),
     _Row("blocked force alone, core-s", "blocked_cpu_s"),
     _Row("blocked force / free actuation", "blocked_by_free", 2, median=0.5),
     _Row("everything outside of both, core-s", "outside_cpu_s", each=3),

@@ -131,6 +131,13 @@ class Result:
         return (self.free_iterations or 0) + (self.blocked_iterations or 0)
 
     @property
+    def free_iterations_a_step(self) -> float | None:
+        """Newton's iterations of the free actuation by its steps, with those of refused tries."""
+        if not self.free_iterations or not self.free_steps:
+            return None
+        return self.free_iterations / self.free_steps
+
+    @property
     def outside_cpu_s(self) -> float | None:
         """Processor time of everything but the two analyses."""
         if self.free_cpu_s is None or self.process_cpu_s is None:
