@@ -136,6 +136,9 @@ UNSTABLE = "the equilibrium is unstable"
 # So much of the way to where stability is lost is the next step.
 _APPROACH = 0.6
 
+# What is foretold within this share of the load beyond the last state explains why the path ends.
+_AHEAD = 0.05
+
 # A step that would end so near a wanted load, as a share of it, ends there.
 _NEAR = 0.05
 
@@ -257,7 +260,8 @@ class Continuation:
         given_up = fine or step < control.smallest or rejections > control.patience
         # A first guess far off is told at once and costs less than foretelling.
         is_dear = result.iterations > 1
-        critical = self._critical_before(load) if is_dear or given_up else None
+        farthest = max(load, (1 + _AHEAD) * last) if given_up else load
+        critical = self._critical_before(farthest) if is_dear or given_up else None
         if critical is not None:
             left = critical - last
             step = min(step, _APPROACH * left)
@@ -269,7 +273,7 @@ class Continuation:
         return replace(path, failure=""), step
 
     def _critical_before(self, load: float) -> float | None:
-        """Where stability is lost before a load that was tried in vain; none if it is not."""
+        """Where stability is foretold to be lost up to a load; none if it is not."""
         if not self._control.foresight:
             return None
         found = self._watch.critical_load(self.states)

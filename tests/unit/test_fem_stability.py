@@ -218,3 +218,17 @@ def test_an_unstable_equilibrium_ahead_is_remembered_until_it_is_passed() -> Non
     assert (nearer.is_unstable, nearer.unstable_load) == (True, 3.0)
     passed = longer(path, 3.0, stable)
     assert (passed.is_unstable, passed.unstable_load) == (False, np.inf)
+
+
+@pytest.mark.parametrize(("ahead", "explains"), [(1.04, True), (1.2, False)])
+def test_what_is_foretold_a_little_farther_on_explains_the_end(
+    ahead: float, explains: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        StabilityWatch, "critical_load", lambda watch, states: ahead * states[-1].load
+    )
+    control = replace(CONTROL, first=0.2, foresight=0.01, resolution=0.01, patience=20)
+    path = Continuation(newton(Balloon()), control).follow([2 * LIMIT], lambda step: None)
+    assert path.failure
+    assert 0.98 * LIMIT < path.load < LIMIT
+    assert path.is_unstable == explains
