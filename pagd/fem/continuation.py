@@ -51,8 +51,8 @@ class StepControl:
         nothing.
     resolution
         How near, as a share of the load, a path comes to a load that is tried in vain: that is
-        tried again from nearer and nearer states, and the last time from so near. 0: other, higher
-        loads are tried, up to the ``patience``.
+        tried again from nearer and nearer states, and the last time from so near, or from a third
+        of that where nothing explains it. 0: other, higher loads are tried, up to the ``patience``.
     """
 
     first: float = 2.5e-4
@@ -138,6 +138,9 @@ _APPROACH = 0.6
 
 # What is foretold within this share of the load beyond the last state explains why the path ends.
 _AHEAD = 0.05
+
+# Where nothing does, steps have to fail that are smaller than the resolution by this factor.
+_UNEXPLAINED = 1 / 3
 
 # A step that would end so near a wanted load, as a share of it, ends there.
 _NEAR = 0.05
@@ -254,21 +257,23 @@ class Continuation:
         control, last = self._control, self.states[-1].load
         correction = result.corrections[0] if result.corrections else math.inf
         step = control.retry_step(load - last, correction, known, rejections)
-        fine = load - last <= control.resolution * load
         if result.iterations > 1:
             self._in_vain = min(self._in_vain, load)
-        given_up = fine or step < control.smallest or rejections > control.patience
+        share = (load - last) / load
+        given_up = step < control.smallest or rejections > control.patience
+        given_up = given_up or share <= control.resolution * _UNEXPLAINED
+        fine = share <= control.resolution or given_up
+        farthest = max(load, (1 + _AHEAD) * last) if fine else load
         # A first guess far off is told at once and costs less than foretelling.
         is_dear = result.iterations > 1
-        farthest = max(load, (1 + _AHEAD) * last) if given_up else load
-        critical = self._critical_before(farthest) if is_dear or given_up else None
+        critical = self._critical_before(farthest) if is_dear or fine else None
         if critical is not None:
             left = critical - last
             step = min(step, _APPROACH * left)
             near = left <= control.foresight * critical
-            if near or given_up or step < control.smallest:
+            if near or fine or step < control.smallest:
                 return self._ended_unstable(path), step
-        if given_up:
+        if given_up or (fine and path.unstable_load < math.inf):
             return replace(path, failure=path.failure or result.reason or UNSTABLE), step
         return replace(path, failure=""), step
 
