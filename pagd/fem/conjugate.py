@@ -77,7 +77,7 @@ class ConjugatePath:
         is stable while the conjugate is held.
         """
         control, wanted = self._control, list(loads)
-        path = replace(path, failure="", is_unstable=False)
+        path = replace(path, failure="", is_unstable=False, unstable_load=math.inf)
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
         steps = [b.conjugate - a.conjugate for a, b in pairwise(points)]
         step, smallest = steps[-1], self._smallest * max(steps)

@@ -188,3 +188,13 @@ def test_behind_a_limit_point_it_is_unstable_under_the_load_alone() -> None:
         assert (found.unstable_directions, found.is_unstable) == (directions, False)
     found = method.solve(State(force(1.0), np.full(2, 1.0), (NO_INTERNAL,)))
     assert (found.unstable_directions, found.is_unstable) == (1, True)
+
+
+def test_what_was_unstable_under_the_load_is_forgotten_under_its_conjugate() -> None:
+    method = newton()
+    rising = Continuation(method, CONTROL)
+    first = rising.follow([2.0], lambda step: None)
+    ahead = replace(first, is_unstable=True, unstable_load=1.0)
+    path = ConjugatePath(method, CONTROL).follow(rising.states, [2.0], lambda step: None, ahead)
+    assert path.load == pytest.approx(2.0)
+    assert (path.failure, path.is_unstable, path.unstable_load) == ("", False, np.inf)
