@@ -12,10 +12,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
 from performance.bounds import machine_rates, measured, text_of
-from performance.options import command_of, example_designs, must_be_positive
+from performance.options import add_examples, command_of, must_be_positive
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish
 from threadpoolctl import threadpool_limits
@@ -49,11 +48,9 @@ def main() -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    names, usual = list(example_designs()), ["bending", "twisting", "mixed"]
-    parser.add_argument("--designs", nargs="+", choices=names, default=usual, help="of Table 2")
+    add_examples(parser)
     parser.add_argument("--pressure", type=float, default=30.0, help="in kPa")
     parser.add_argument("--repeats", type=int, default=5, help="the fastest of so many counts")
-    parser.add_argument("--page", type=Path, help="page whose section is replaced")
     return parser
 
 

@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from performance.options import command_of, example_designs
+from performance.options import add_examples, command_of, example_designs
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish, table, wrapped
 
@@ -67,9 +67,7 @@ def main() -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    names, usual = list(example_designs()), ["bending", "twisting", "mixed"]
-    parser.add_argument("--designs", nargs="+", choices=names, default=usual, help="of Table 2")
-    parser.add_argument("--page", type=Path, help="page whose section is replaced")
+    add_examples(parser)
     return parser
 
 

@@ -17,6 +17,7 @@ from performance.runs import Measured
 
 __all__ = [
     "add_common",
+    "add_examples",
     "command_of",
     "example_designs",
     "free_config",
@@ -48,6 +49,13 @@ def add_common(parser: argparse.ArgumentParser) -> None:
         help="a run that takes longer is ended (default: %(default)g)",
     )
     add("--anew", action="store_true", help="measure again what is kept from an earlier run")
+
+
+def add_examples(parser: argparse.ArgumentParser) -> None:
+    """Add ``--designs``, all of Table 2 unless given, and ``--page``."""
+    names = list(example_designs())
+    parser.add_argument("--designs", nargs="+", choices=names, default=names, help="of Table 2")
+    parser.add_argument("--page", type=Path, help="page whose section is replaced")
 
 
 def command_of(

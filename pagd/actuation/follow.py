@@ -34,7 +34,8 @@ _PATIENT: dict[str, Any] = {"iterations": 14, "growth": 2.0, "contraction": 0.55
 # Largest factor from one step to the next: rows of chambers have smooth paths until walls touch.
 _GROWTH = 5.0
 
-# So near, as a share of the pressure, a held tip is followed to where it buckles.
+# So near, as a share of the pressure, an actuator is followed to where it is foretold to buckle,
+# and a held one to a pressure that it does not reach.
 _RESOLUTION = 0.01
 
 # Gravity is raised in so many steps at first, and by no less than so many of these.

@@ -30,6 +30,9 @@ from pagd.fem.term import LoadTerm
 # Tries to land on a wanted load between two states, each of which brings them nearer.
 _LANDINGS = 6
 
+# A step below this share of the largest one between the known states is the end.
+_SMALLEST = 1e-2
+
 
 @dataclass(frozen=True, slots=True)
 class _Point:
@@ -48,22 +51,19 @@ class ConjugatePath:
         Newton's method, with its load term.
     control
         How the error of a first guess chooses the next step; its loads do not matter here.
-    smallest_share
-        A step below this share of the largest one between the known states is the end, …
     most_steps
-        … and so are more steps than this.
+        More steps than this are the end.
     """
 
     def __init__(
         self,
         newton: Newton,
         control: StepControl,
-        smallest_share: float = 1e-2,
         most_steps: int = 300,
     ) -> None:
         if newton.load_term is None:
             raise ValueError("to step by the conjugate of the load, its term is needed")
-        self._newton, self._control, self._smallest = newton, control, smallest_share
+        self._newton, self._control = newton, control
         self._most_steps = most_steps
         self._term: LoadTerm = newton.load_term
 
@@ -80,7 +80,7 @@ class ConjugatePath:
         path = replace(path, failure="", is_unstable=False, unstable_load=math.inf)
         points = [_Point(s, self._term.conjugate(s.unknowns)[0]) for s in known]
         steps = [b.conjugate - a.conjugate for a, b in pairwise(points)]
-        step, smallest = steps[-1], self._smallest * max(steps)
+        step, smallest = steps[-1], _SMALLEST * max(steps)
         end, rejections = path.steps + self._most_steps, 0
         while wanted:
             if path.steps >= end:
