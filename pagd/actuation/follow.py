@@ -38,6 +38,9 @@ _GROWTH = 5.0
 # and a held one to a pressure that it does not reach.
 _RESOLUTION = 0.01
 
+# A held tip moves less: so large a first correction, in mm, is wanted of a node then.
+_HELD_CORRECTION = 0.3
+
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
 
@@ -69,7 +72,7 @@ def follow(
     solver = linear_solver(actuation.linear_solver)
     touches = any(isinstance(term, FaceContact | PlaneContact) for term in assembly.terms)
     settings = NewtonSettings(tolerance=actuation.tolerance_mm, **(_PATIENT if touches else {}))
-    newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure)
+    newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure, recorder.force)
     followed = _follow(body, newton, actuation, recorder)
     # Where the path ends early, how far it came is a result too.
     recorder.record_last()
@@ -88,14 +91,15 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     if failure:
         recorder.ending = failure
         return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure[1]))
+    held = recorder.force is not None
     control = StepControl(
+        wanted_correction=_HELD_CORRECTION if held else StepControl().wanted_correction,
         first=actuation.first_step_kPa * _KPA,
         smallest=actuation.smallest_step_kPa * _KPA,
         growth=_GROWTH,
-        # Between states a force is known far worse than the displacements: walls are stiff.
-        dense=recorder.force is None,
+        dense=True,
         foresight=_RESOLUTION,
-        resolution=_RESOLUTION if recorder.force is not None else 0.0,
+        resolution=_RESOLUTION if held else 0.0,
     )
     pressures = list(actuation.recorded_kPa() * _KPA)
     continuation = Continuation(newton, control)
@@ -126,8 +130,9 @@ def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | No
     """The state without pressure, under gravity where there is any; why not all of gravity."""
     state = newton.assembly.at_rest()
     newton.assembly.look_around(state)
+    newton.assembly.linearize(state)
+    state = newton.with_reaction(state)
     if body.gravity is None:
-        newton.assembly.linearize(state)
         return state, None
     share, step, is_unstable = 0.0, _GRAVITY_STEP, False
     while share < 1.0:

@@ -71,18 +71,16 @@ class Recorder:
 
     def __call__(self, step: Step) -> str | None:
         """Note a converged step; a reason to stop, if there is one."""
-        # Not in the clock's part: what it assembles has a clock of its own.
-        force = self.force(step.state) if self.force else math.nan
         with self.clock.part("states"):
-            return self._note(step, force)
+            return self._note(step)
 
-    def _note(self, step: Step, force: float) -> str | None:
+    def _note(self, step: Step) -> str | None:
         state = self._last = step.state
         pressure, body = state.load / _KPA, self.body
         energy = self._energy(state)
         gap = body.contact.smallest_gap if body.contact else math.inf
         volume = body.volume(state.unknowns)
-        self._rows.append((pressure, volume, energy, step.iterations, gap, force))
+        self._rows.append((pressure, volume, energy, step.iterations, gap, state.reaction))
         if step.wanted or self._has_grown():
             self.record_last()
         if self.progress:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -27,11 +28,15 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A point of the load path: load factor, all unknowns, internal variables per term."""
+    """A point of the load path: load factor, all unknowns, internal variables per term.
+
+    ``reaction`` is the force in N on what holds the body; NaN where nothing tells it.
+    """
 
     load: float
     unknowns: FloatArray
     internal: tuple[FloatArray, ...]
+    reaction: float = math.nan
 
 
 @compiled

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +53,9 @@ class StepControl:
         nothing.
     resolution
         How near, as a share of the load, a path comes to a load that is tried in vain: that is
-        tried again from nearer and nearer states, and the last time from so near, or from a third
-        of that where nothing explains it. 0: other, higher loads are tried, up to the ``patience``.
+        tried again from ever nearer states, a quarter as far each time, and the last time from so
+        near, or from a third of that where nothing explains it. 0: other, higher loads are tried,
+        up to the ``patience``.
     """
 
     first: float = 2.5e-4
@@ -136,6 +139,9 @@ UNSTABLE = "the equilibrium is unstable"
 # So much of the way to where stability is lost is the next step.
 _APPROACH = 0.6
 
+# A load that was tried in vain is tried again from so much nearer at least.
+_NEARER = 0.25
+
 # What is foretold within this share of the load beyond the last state explains why the path ends.
 _AHEAD = 0.05
 
@@ -144,6 +150,8 @@ _UNEXPLAINED = 1 / 3
 
 # A step that would end so near a wanted load, as a share of it, ends there.
 _NEAR = 0.05
+
+_load = attrgetter("load")
 
 Observer = Callable[[Step], str | None]
 Boundary = Callable[[float, FloatArray], None]
@@ -198,7 +206,8 @@ class Continuation:
         #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
         self._touches = False
-        self._in_vain = math.inf
+        # A load tried in vain, and from how far.
+        self._in_vain, self._in_vain_from = math.inf, 0.0
         self._watch = StabilityWatch(newton)
 
     def follow(
@@ -258,7 +267,8 @@ class Continuation:
         correction = result.corrections[0] if result.corrections else math.inf
         step = control.retry_step(load - last, correction, known, rejections)
         if result.iterations > 1:
-            self._in_vain = min(self._in_vain, load)
+            if load <= self._in_vain:
+                self._in_vain, self._in_vain_from = load, load - last
         share = (load - last) / load
         given_up = step < control.smallest or rejections > control.patience
         given_up = given_up or share <= control.resolution * _UNEXPLAINED
@@ -292,7 +302,8 @@ class Continuation:
         """The load after a step; the way to a load to land on is divided evenly."""
         resolution, last, in_vain = self._control.resolution, self.states[-1].load, self._in_vain
         if resolution and last + step > in_vain:
-            is_near = in_vain - last <= 2 * resolution * in_vain
+            near = max(2 * resolution * in_vain, _NEARER * self._in_vain_from)
+            is_near = in_vain - last <= near
             return in_vain if is_near else (last + in_vain) / 2
         passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
         if not passes or self._touches:
@@ -328,24 +339,36 @@ class Continuation:
         None where no state at a wanted load was found; the path then has the reason as its
         ``failure``.
         """
-        kept, start = self._control.order + 2, path
-        states, steps = [*self.states, reached][-kept:], []
+        start, states, steps = path, [*self.states, reached], []
         touches = self._control.dense and self._newton.assembly.touches(reached)
-        for load in wanted:
-            if load >= reached.load:
-                break
-            state = None if touches else state_between(self._newton, states, load)
-            if state is not None:
-                steps.append(Step(state, 0, True, interpolated=True))
-                continue
-            near = states[-2:] if touches else states
-            result = self._newton.solve(at_load(near, load), before=states[-2])
+        left = [load for load in wanted if load < reached.load]
+        while left:
+            if not touches:
+                found = [(load, self._interpolated(states, load)) for load in left]
+                steps += [Step(state, 0, True, interpolated=True) for _, state in found if state]
+                left = [load for load, state in found if state is None]
+                if not left:
+                    break
+            # One in the middle lets more of the others be interpolated.
+            load = left.pop(0 if touches else len(left) // 2)
+            place = bisect(states, load, key=_load)
+            near = states[place - 1 : place + 1] if touches else self._around(states, load)
+            result = self._newton.solve(at_load(near, load), before=states[place - 1])
             path = tried(path, result)
             if result.state is None or result.is_unstable:
                 work = replace(start, iterations=path.iterations, corrections=path.corrections)
                 return replace(failed(work, result), failure=result.reason or UNSTABLE), None
             path = longer(path, load, result)
-            states.insert(-1, result.state)
+            states.insert(place, result.state)
             steps.append(Step(result.state, result.iterations, True))
-        self.states, self._touches = states[-kept:], touches
-        return path, steps
+        self.states, self._touches = states[-self._control.order - 2 :], touches
+        return path, sorted(steps, key=lambda step: step.state.load)
+
+    def _interpolated(self, states: Sequence[State], load: float) -> State | None:
+        return state_between(self._newton, self._around(states, load), load)
+
+    def _around(self, states: Sequence[State], load: float) -> Sequence[State]:
+        """Those of the states that a polynomial at a load is best made of, two beyond it if any."""
+        count = self._control.order + 2
+        first = min(bisect(states, load, key=_load) + 2, len(states)) - count
+        return states[max(first, 0) :][:count]

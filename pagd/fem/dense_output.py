@@ -22,6 +22,9 @@ FloatArray = NDArray[np.float64]
 # A polynomial of lower degree is taken where its error is no more than so many times the least.
 _AS_GOOD = 3.0
 
+# Two polynomials agree on a reaction up to this share of the largest one around it.
+_REACTION = 2e-3
+
 #: Fewer states tell nothing of the error.
 FEWEST = 4
 
@@ -43,7 +46,8 @@ def interpolate(states: Sequence[State], places: Sequence[float], place: float) 
         np.asarray(sum(f * s.internal[k] for f, s in zip(factors, states, strict=True)))
         for k in range(len(states[0].internal))
     )
-    return State(load, unknowns, internal)
+    reaction = sum(f * s.reaction for f, s in zip(factors, states, strict=True))
+    return State(load, unknowns, internal, reaction)
 
 
 def at_load(states: Sequence[State], load: float) -> State:
@@ -81,11 +85,16 @@ def state_between(newton: Newton, states: Sequence[State], load: float) -> State
     than the tolerance of the displacements; the difference is the error of the latter, and that of
     the former, which is returned, is smaller as long as the path is smooth. So not where anything
     touches at the state, nor should it at the last of ``states``: contact begins with a kink.
+    Reactions, where there are any, have to agree as well. They are interpolated as the states are:
+    the reaction that an interpolated state has is far worse, since walls are stiff.
     """
     if len(states) < FEWEST:
         return None
     found, coarser = at_load(states, load), at_load(states[1:], load)
     difference = newton.largest_displacement(found.unknowns - coarser.unknowns)
     if not difference < newton.settings.tolerance:
+        return None
+    largest = max(abs(state.reaction) for state in states)
+    if abs(found.reaction - coarser.reaction) > _REACTION * largest:
         return None
     return None if newton.assembly.touches(found) else found

@@ -20,7 +20,7 @@ section 5.4) as long as each correction is much smaller than the one before.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,6 +41,9 @@ _TO_AND_FRO = 3
 # Corrections with old factors do not shrink quadratically: they end below this share of the
 # tolerance, so that the error left is below the tolerance as well.
 _SHARE = 0.1
+
+# A reaction is stiffer than what is free: a micrometre of the walls is a per cent of the force.
+_SHARE_FOR_REACTION = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,6 +125,9 @@ class Newton:
         Tolerance and limits.
     load_term
         The term of the assembly that the load acts through; needed to hold its conjugate.
+    reaction
+        The force in N on what holds the body, at a state near the one that was linearised last;
+        every solution gets it.
     """
 
     def __init__(
@@ -131,9 +137,11 @@ class Newton:
         displacements: int,
         settings: NewtonSettings | None = None,
         load_term: LoadTerm | None = None,
+        reaction: Callable[[State], float] | None = None,
     ) -> None:
         self.assembly = assembly
         self.load_term = load_term
+        self._reaction = reaction
         self.solver = solver
         self.settings = settings or NewtonSettings()
         self.displacements = displacements
@@ -202,6 +210,13 @@ class Newton:
         self._look_around(state)
         self._factorise(state, *self.assembly.linearize(state)[1:], None)
 
+    def with_reaction(self, state: State) -> State:
+        """The state with its reaction, if that is wanted; it is near the one linearised last."""
+        if self._reaction is None:
+            return state
+        self._look_around(state)
+        return replace(state, reaction=self._reaction(state))
+
     def _solve(
         self, guess: State, conjugate: float | None, before: State | None, largest_first: float
     ) -> NewtonResult:
@@ -227,13 +242,16 @@ class Newton:
             unstable = self._unstable_directions()
             trial = _loaded(self.assembly.advance(state, correction), load)
             trusted = 2 * self.assembly.excess
-            settled = _Settled(trial, size < settings.tolerance)
+            is_near = size < settings.tolerance
+            settled = _Settled(trial, is_near)
             # Where stability has to be judged, it is at the solution, by factors of its own.
-            if not settled.converged and unstable <= falls:
+            if unstable <= falls and (not is_near or self._reaction is not None):
                 settled = self._settle(trial, trusted, corrections, conjugate)
+                settled = replace(settled, converged=is_near or settled.converged)
             if settled.converged:
+                found = self.with_reaction(settled.state)
                 return NewtonResult(
-                    settled.state, len(full), tuple(corrections), "", unstable, unstable > falls
+                    found, len(full), tuple(corrections), "", unstable, unstable > falls
                 )
             step = self._admissible_step(settled, trusted, state, correction, load)
             if step is None:
@@ -257,6 +275,8 @@ class Newton:
         but not ever smaller: where other points touch than did, it takes two of them to tell.
         """
         touching = self.assembly.touching
+        is_stiff = self._reaction is not None and not any(touching)
+        share = _SHARE_FOR_REACTION if is_stiff else _SHARE
         for count in range(self.settings.reuses):
             energy, residual = self.assembly.residual_near(state)
             if not np.isfinite(energy) or self.assembly.excess > trusted:
@@ -271,7 +291,7 @@ class Newton:
                 break
             state = _loaded(self.assembly.advance(state, correction), load)
             corrections.append(size)
-            if (is_alike or count > 0) and size < _SHARE * self.settings.tolerance:
+            if (is_alike or count > 0) and size < share * self.settings.tolerance:
                 return _Settled(state, converged=True)
         return _Settled(state, converged=False)
 

@@ -15,7 +15,7 @@ STAGE_VERSIONS = {
     "geometry": 1,
     "repair": 1,
     "mesh": 2,
-    "solve": 9,
+    "solve": 10,
     "metrics": 4,
     "figures": 3,
     "generative_figures": 3,

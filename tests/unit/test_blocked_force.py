@@ -52,7 +52,8 @@ def test_the_force_is_as_good_at_every_recorded_pressure() -> None:
     exact = blocked_force(beam(), MATERIAL, PAPER, replace(many, tolerance_mm=1e-6))
     forces = [r.history["blocked_force_N"][r.history["recorded"]] for r in (found, exact)]
     np.testing.assert_allclose(forces[0], forces[1], rtol=0.01, atol=1e-12)
-    assert (found.history["newton_iterations"][1:] > 0).all()
+    interpolated = found.history["newton_iterations"][1:] == 0
+    assert 0 < interpolated.sum() < len(interpolated)
 
 
 def test_the_force_of_a_half_is_that_of_the_whole() -> None:

@@ -71,6 +71,34 @@ def test_a_state_that_is_not_known_well_enough_is_none() -> None:
     assert state_between(loose(Spring()), states[:3], 2.0) is None
 
 
+def test_reactions_are_interpolated_and_have_to_agree() -> None:
+    def bent(load: float, kink: float) -> State:
+        return State(load, np.array([load**2]), (), 5 * load**2 + kink * abs(load - 3.0))
+
+    loads, method = (0.0, 1.0, 3.0, 4.0, 8.0), loose(Spring())
+    found = state_between(method, [bent(load, 0.0) for load in loads], 6.0)
+    assert found is not None
+    assert found.reaction == pytest.approx(180.0, rel=1e-12)
+    assert state_between(method, [bent(load, 5.0) for load in loads], 6.0) is None
+
+
+def test_one_in_the_middle_lets_others_be_interpolated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the loads that a step has passed over, the one in the middle is solved for first."""
+    middle = 6.0
+
+    def between(newton: Newton, states: Sequence[State], load: float) -> State | None:
+        knows = any(state.load == middle for state in states)
+        assert states[0].load < load < states[-1].load
+        return at_load(states, load) if knows else None
+
+    monkeypatch.setattr("pagd.fem.continuation.state_between", between)
+    steps, path = follow(loose(Spring()), growth=100.0)
+    passed = [step for step in steps if step.wanted and step.state.load < WANTED[-1]]
+    assert [step.state.load for step in passed] == WANTED[:-1]
+    assert [step.state.load for step in passed if not step.interpolated] == [middle]
+    assert path.load == WANTED[-1]
+
+
 def count_of(function: Callable[[float], float], loads: list[float]) -> int:
     states = [State(load, np.array([function(load)]), ()) for load in loads]
     return states_to_use(loose(Spring()), states, loads, order=4)

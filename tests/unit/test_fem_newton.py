@@ -107,6 +107,26 @@ def test_a_linear_spring_takes_one_factorisation() -> None:
     assert (again.iterations, again.corrections) == (2, pytest.approx((0.5, 0.0)))
 
 
+def test_a_solution_has_its_reaction_more_exactly() -> None:
+    """The reaction is asked for at the solution, which is corrected once more."""
+    assembly = Assembly([Spring(stiffening=1.0)], 1, np.array([False]))
+    settings = NewtonSettings(tolerance=0.1)
+    rough = Newton(assembly, SuperLUSolver(), 1, settings).solve(at(2.0, 0.95))
+    asked: list[float] = []
+
+    def reaction(state: State) -> float:
+        asked.append(float(state.unknowns[0]))
+        return 7.0 * asked[-1]
+
+    fine = Newton(assembly, SuperLUSolver(), 1, settings, reaction=reaction).solve(at(2.0, 0.95))
+    assert rough.state is not None
+    assert np.isnan(rough.state.reaction)
+    assert fine.state is not None
+    assert fine.iterations == rough.iterations == 1
+    assert fine.state.reaction == 7.0 * fine.state.unknowns[0] == 7.0 * asked[-1]
+    assert abs(fine.state.unknowns[0] - 1) < 0.1 * abs(rough.state.unknowns[0] - 1)
+
+
 def test_convergence_is_quadratic() -> None:
     stiffening = newton(Spring(stiffening=1.0), tolerance=1e-10, iterations=20, reuses=0)
     result = stiffening.solve(at(2.0, 0.9))
