@@ -38,9 +38,6 @@ _GROWTH = 5.0
 # and a held one to a pressure that it does not reach.
 _RESOLUTION = 0.01
 
-# A held tip moves less: so large a first correction, in mm, is wanted of a node then.
-_HELD_CORRECTION = 0.3
-
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
 
@@ -93,7 +90,6 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
         return _Followed(LoadPath(0.0, 0, 0, 0, failure=failure[1]))
     held = recorder.force is not None
     control = StepControl(
-        wanted_correction=_HELD_CORRECTION if held else StepControl().wanted_correction,
         first=actuation.first_step_kPa * _KPA,
         smallest=actuation.smallest_step_kPa * _KPA,
         growth=_GROWTH,

@@ -309,6 +309,9 @@ class Continuation:
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)
         load = self._step_towards(wanted[-1], step)
+        if load > wanted[0] and self._newton.assembly.touches(self._guess(load)):
+            # Contact is hard to step into from afar.
+            return self._step_towards(wanted[0], step)
         near = _NEAR * (load - self.states[-1].load)
         return next((w for w in wanted if abs(w - load) <= near), load)
 
@@ -326,10 +329,13 @@ class Continuation:
         # A guess half-way back would not have the values that are prescribed at its load.
         before = None if self._boundary else self.states[-1]
         trust = self._control.largest_first(known)
-        guess = at_load(self.states[-known:], load)
+        guess = self._guess(load, known)
         if self._boundary:
             self._boundary(load, guess.unknowns)
         return self._newton.solve(guess, before=before, largest_first=trust)
+
+    def _guess(self, load: float, known: int | None = None) -> State:
+        return at_load(self.states[-(known or self._known()) :], load)
 
     def _pass_over(
         self, reached: State, wanted: Sequence[float], path: LoadPath

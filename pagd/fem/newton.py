@@ -245,7 +245,7 @@ class Newton:
             is_near = size < settings.tolerance
             settled = _Settled(trial, is_near)
             # Where stability has to be judged, it is at the solution, by factors of its own.
-            if unstable <= falls and (not is_near or self._reaction is not None):
+            if unstable <= falls and (not is_near or self._is_stiff):
                 settled = self._settle(trial, trusted, corrections, conjugate)
                 settled = replace(settled, converged=is_near or settled.converged)
             if settled.converged:
@@ -266,6 +266,14 @@ class Newton:
         """The largest displacement of a correction (size,) of the unknowns, in mm."""
         return float(np.abs(correction[: self.displacements]).max())
 
+    @property
+    def _is_stiff(self) -> bool:
+        """Whether a reaction is wanted that displacements have to be known better for.
+
+        Where something touches they are not, at the price of more factorisations.
+        """
+        return self._reaction is not None and not any(self.assembly.touching)
+
     def _settle(
         self, state: State, trusted: float, corrections: list[float], conjugate: float | None
     ) -> _Settled:
@@ -275,8 +283,7 @@ class Newton:
         but not ever smaller: where other points touch than did, it takes two of them to tell.
         """
         touching = self.assembly.touching
-        is_stiff = self._reaction is not None and not any(touching)
-        share = _SHARE_FOR_REACTION if is_stiff else _SHARE
+        share = _SHARE_FOR_REACTION if self._is_stiff else _SHARE
         for count in range(self.settings.reuses):
             energy, residual = self.assembly.residual_near(state)
             if not np.isfinite(energy) or self.assembly.excess > trusted:
