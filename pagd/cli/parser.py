@@ -190,6 +190,11 @@ def _add_deck(commands: Any) -> None:
         form.add_argument(
             f"--{option}", default=default, metavar="NAME", help=f"{text} (default: {default})"
         )
+    form.add_argument(
+        "--one-step",
+        action="store_true",
+        help="one step to the last pressure: CalculiX goes farther so, where there is paper",
+    )
     add_config(deck)
     add_verbose(deck)
 

@@ -90,6 +90,8 @@ def write_deck(
       ``STRI65`` in Abaqus; ``M3D6`` is the membrane of both.
     - CalculiX expands shells and membranes to wedges of the sheet's thickness, whose middle
       follows the shared nodes, so that here the tetrahedra and the wedges overlap.
+    - CalculiX makes those wedges anew in every step: with paper, the bending example ends after
+      the first of steps of 5 kPa, while a single one goes to 50 kPa.
     - A compressibility D of zero is a missing term in Abaqus and a default of its own in
       CalculiX: those that are to be missing are written as large numbers.
     - ``*DLOAD`` and ``*DSLOAD`` act on the deformed faces in both, given ``NLGEOM``.

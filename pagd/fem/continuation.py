@@ -266,9 +266,8 @@ class Continuation:
         control, last = self._control, self.states[-1].load
         correction = result.corrections[0] if result.corrections else math.inf
         step = control.retry_step(load - last, correction, known, rejections)
-        if result.iterations > 1:
-            if load <= self._in_vain:
-                self._in_vain, self._in_vain_from = load, load - last
+        if result.iterations > 1 and load <= self._in_vain:
+            self._in_vain, self._in_vain_from = load, load - last
         share = (load - last) / load
         given_up = step < control.smallest or rejections > control.patience
         given_up = given_up or share <= control.resolution * _UNEXPLAINED
@@ -299,12 +298,16 @@ class Continuation:
         return replace(path, failure=UNSTABLE, is_unstable=True, critical=critical)
 
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
-        """The load after a step; the way to a load to land on is divided evenly."""
+        """The load after a step, but not yet one that was tried in vain."""
         resolution, last, in_vain = self._control.resolution, self.states[-1].load, self._in_vain
-        if resolution and last + step > in_vain:
-            near = max(2 * resolution * in_vain, _NEARER * self._in_vain_from)
-            is_near = in_vain - last <= near
-            return in_vain if is_near else (last + in_vain) / 2
+        load = self._load_after(wanted, step)
+        if not resolution or last + step <= in_vain:
+            return load
+        near = max(2 * resolution * in_vain, _NEARER * self._in_vain_from)
+        return min(load, in_vain if in_vain - last <= near else (last + in_vain) / 2)
+
+    def _load_after(self, wanted: Sequence[float], step: float) -> float:
+        """The load after a step; the way to a load to land on is divided evenly."""
         passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)

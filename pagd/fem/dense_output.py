@@ -79,7 +79,7 @@ def states_to_use(
 
 
 def state_between(newton: Newton, states: Sequence[State], load: float) -> State | None:
-    """The state at a load between the last two of ``states``, if it is known well enough.
+    """The state at a load between those of ``states``, if it is known well enough.
 
     It is where the polynomial through all of them and the one without the first differ by less
     than the tolerance of the displacements; the difference is the error of the latter, and that of

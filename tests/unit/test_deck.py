@@ -277,6 +277,10 @@ def test_command_writes_the_recorded_pressures(tmp_path: Path) -> None:
     assert main([*arguments, "--solid-element", "C3D10H", "--sheet-element", "STRI65"]) == 0
     assert "TYPE=C3D10H" in out.read_text()
     assert out.read_text().count("*STEP") == 10
+    assert main([*arguments, "--one-step"]) == 0
+    loads = [lines[0] for line, lines in sections(out) if line.startswith("*DSLOAD")]
+    assert loads == ["CAVITY, P, 0.05"]
+    assert rows(out, "*STATIC")[0][0] == 0.025
 
 
 def test_command_tells_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
