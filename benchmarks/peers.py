@@ -1,6 +1,6 @@
 """pagd beside other programs: CalculiX, FElupe and NGSolve.
 
-    python benchmarks/peers.py converged [--blocks 3 2 1.6 1.3] [--order P] [ANALYSES]
+    python benchmarks/peers.py converged [--blocks 6] [--halvings 1] [--order P] [ANALYSES]
     python benchmarks/peers.py same-mesh [--sizes 5 3] [--blocks 6] [--page …] [ANALYSES]
     python benchmarks/peers.py equal-error [--finer 4 3 2.5 2 1.5] [--page …] [ANALYSES]
     python benchmarks/peers.py calculix [--finer …] [--page …] [ANALYSES]
@@ -11,8 +11,8 @@ where ANALYSES are [--designs bending twisting] [--mesher gmsh structured] [--el
 [--half-model] [--threads 2] [--maximum-pressure 50] [--time-limit 3600] [--repeats 3], and all
 commands know [--results FOLDER] [--fresh] [--out JSON]; ``--help`` after any of them says more.
 
-``converged`` extrapolates the tip over finer meshes: the errors of the others are measured against
-it. ``same-mesh`` runs pagd and CalculiX on the same meshes, ``equal-error`` runs CalculiX on finer
+``converged`` extrapolates the tip over a mesh and its halves: errors are measured against it.
+``same-mesh`` runs pagd and CalculiX on the same meshes, ``equal-error`` runs CalculiX on finer
 ones until it is as good as pagd, ``calculix`` does both. ``iteration`` times single Newton
 iterations beside FElupe and NGSolve, in an environment of their own that it makes.
 
@@ -57,10 +57,11 @@ def main() -> None:
 
 def _study(options: argparse.Namespace) -> Study:
     bodies = [
-        Body(design, mesher, size, options.half_model)
+        Body(design, mesher, size, options.half_model, halvings)
         for design in options.designs
         for mesher in options.mesher
         for size in (options.blocks if mesher == STRUCTURED else options.sizes)
+        for halvings in range(getattr(options, "halvings", 0) + 1)
     ]
     return Study(
         folder=options.results.resolve(),

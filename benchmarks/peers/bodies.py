@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from performance.halving import halve
 
 from pagd import config as configuration
 from pagd.catalogue import NamedDesign, read_designs
@@ -19,6 +20,7 @@ from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.types import Mesh
 from pagd.record import read_record
 from pagd.stages import geometry, mesh, repair
+from pagd.stages.mesh import mesh_file
 from peers.kept import digest, source_digest
 
 __all__ = ["Body", "made", "tip_displacement"]
@@ -44,18 +46,22 @@ class Body:
         Name of the mesher, and the size of its tetrahedra or blocks.
     half
         Whether half of it is meshed where it is symmetric.
+    halvings
+        How often every edge of the mesh is halved.
     """
 
     design: str
     mesher: str
     size_mm: float
     half: bool = False
+    halvings: int = 0
 
     @property
     def name(self) -> str:
         """For files."""
         mesher = self.mesher.replace(":", ".")
-        return f"{self.design}-{mesher}-{self.size_mm:g}mm{'-half' if self.half else ''}"
+        half, halved = "-half" if self.half else "", "-halved" * self.halvings
+        return f"{self.design}-{mesher}-{self.size_mm:g}mm{half}{halved}"
 
     def config(self) -> dict[str, Any]:
         """Return the completed configuration of its stages."""
@@ -78,7 +84,8 @@ def made(body: Body, folder: Path) -> Path:
         If there is no design of that name, or it cannot be meshed so.
     """
     out, named, config = folder / body.name, _design(body.design), body.config()
-    made_of = digest([named.as_json(), config["mesh"], source_digest()])
+    halving = Path(halve.__code__.co_filename).read_text(encoding="utf-8")
+    made_of = digest([named.as_json(), config["mesh"], source_digest(), halving])
     stamp = out / _MADE_OF
     if stamp.is_file() and stamp.read_text(encoding="utf-8") == made_of:
         return out / "mesh"
@@ -89,6 +96,8 @@ def made(body: Body, folder: Path) -> Path:
     record = read_record(out / "mesh")
     if record.status is not Status.ok:
         raise InputError(f"{body.name}: there is no mesh ({record.reason})")
+    for _ in range(body.halvings):
+        halve(mesh_file(out / "mesh"))
     write_text(stamp, made_of)
     return out / "mesh"
 

@@ -18,7 +18,7 @@ Handler = Callable[[argparse.Namespace], None]
 #: Commands with whole analyses: what they do, sizes of tetrahedra and of blocks (mm), and whether
 #: symmetric designs are halved.
 _ANALYSES: Mapping[str, tuple[str, list[float], list[float], bool]] = {
-    "converged": ("extrapolate the tip over finer meshes", [4, 3, 2], [3, 2, 1.6, 1.3], True),
+    "converged": ("extrapolate the tip over finer meshes", [4], [6], True),
     "same-mesh": ("pagd and CalculiX on the same meshes", [5, 3], [6], False),
     "equal-error": ("CalculiX on finer meshes until it is as good", [5, 3], [6], False),
     "calculix": ("same-mesh, then equal-error", [5, 3], [6], False),
@@ -41,6 +41,8 @@ def make_parser(text: str, handlers: Mapping[str, Handler]) -> argparse.Argument
         if name == "converged":
             # Its hexahedra are nearer to the limit than tetrahedra of as many unknowns.
             sub.set_defaults(mesher=["structured"])
+            help_text = "so often every edge is halved (default: %(default)s)"
+            sub.add_argument("--halvings", type=int, choices=range(4), default=1, help=help_text)
             help_text = "of the error in the element size (default: %(default).4g)"
             sub.add_argument("--order", type=_positive, default=ORDER, help=help_text)
         if name in ("equal-error", "calculix"):

@@ -22,8 +22,8 @@ _NO_HYBRID = (
     "where pagd has hexahedra, which are split for CalculiX, the same Yeoh material, paper (S6 in "
     "CalculiX), clamp and follower pressure; no contact. pagd gives a state at every 5 kPa; "
     "CalculiX goes to the last pressure in one step, with a first increment of 1.25 kPa, since it "
-    "makes its shells anew in every step and does not get far by steps of 5 kPa. Times are of whole "
-    "processes: `pagd solve` and `ccx`, kernels compiled before. CalculiX runs by its own "
+    "makes its shells anew in every step and does not get far by steps of 5 kPa. Times are of "
+    "whole processes: `pagd solve` and `ccx`, kernels compiled before. CalculiX runs by its own "
     "criteria of convergence and step control, with SPOOLES, as Debian builds it. An error is the "
     "distance of the tip from its mesh-converged place, by the displacement of the latter, at the "
     "last pressure that both reached."
@@ -68,8 +68,9 @@ def _converged_notes(designs: Iterable[str], exact: Mapping[str, Converged]) -> 
         sizes = ", ".join(f"{mesh['size_mm']:g}" for mesh in tip.meshes)
         yield (
             f"- {design}: the mesh-converged tip moves by {_place(tip.tip_mm[-1])} mm at "
-            f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; with one "
-            f"of them left out it would be off by {_percent(tip.spread_mm[-1] / length)} at most."
+            f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; with "
+            "one of three left out, or another order of the error, it would be off by "
+            f"{_percent(tip.spread_mm[-1] / length)} at most."
         )
 
 
@@ -175,7 +176,7 @@ def converged_text(tips: Mapping[str, Converged], order: float) -> str:
         lines.append([tip.design, "0", "", "", _place(tip.tip_mm[-1]), spread])
     text = (
         f"Tip at the last pressure, extrapolated with the order {order:.3g}; ± is how far off it "
-        "would be, at most, with one of the meshes left out."
+        "would be, at most, with one of three meshes or more left out, or with another order."
     )
     return f"{wrapped(text)}\n\n{table(headings, lines)}"
 

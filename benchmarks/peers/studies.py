@@ -105,14 +105,17 @@ class Study:
         if len({body.mesher for body in self.bodies}) > 1:
             raise InputError("--mesher: must be one to extrapolate over meshes, not several.")
         if len(self.bodies) < FEWEST_MESHES * len(designs):
-            raise InputError(f"--sizes: must be at least {FEWEST_MESHES} to extrapolate over.")
+            raise InputError(
+                f"--sizes, --blocks and --halvings must give {FEWEST_MESHES} meshes at least to "
+                "extrapolate over."
+            )
         tips = {}
         for design in designs:
             # Coarse to fine: what is missing in the end are the meshes that take longest.
             bodies = [body for body in self.bodies if body.design == design]
-            bodies.sort(key=lambda body: -body.size_mm)
+            bodies.sort(key=lambda body: (body.halvings, -body.size_mm))
             runs = [self.ours(body, repeats=1) for body in bodies]
-            sizes = [body.size_mm for body in bodies]
+            sizes = [body.size_mm / 2**body.halvings for body in bodies]
             tips[design] = extrapolated(design, sizes, runs, order)
             write_converged(self.folder, tips)
         return tips

@@ -87,7 +87,8 @@ def _on_edge(body: Body) -> tuple[Assembly, Force]:
     assembly = Assembly(body.terms, body.size, fixed)
 
     def force(state: State) -> float:
-        return body.copies * float(assembly.residual_near(state)[1][held].sum())
+        energy, residual = assembly.residual_near(state)
+        return body.copies * float(residual[held].sum()) if np.isfinite(energy) else np.nan
 
     return assembly, force
 
@@ -106,8 +107,10 @@ def _on_plate(body: Body, actuation: Actuation) -> tuple[Assembly, Force]:
     def force(state: State) -> float:
         # By balance with the clamp, since pressure has no resultant: the penalty is so stiff that
         # its own force would show the last thousandth of a millimetre.
-        reaction = float(assembly.residual_near(state)[1][clamp].sum())
-        return -body.copies * (reaction + weight)
+        energy, residual = assembly.residual_near(state)
+        if not np.isfinite(energy):
+            return np.nan
+        return -body.copies * (float(residual[clamp].sum()) + weight)
 
     return assembly, force
 

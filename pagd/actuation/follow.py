@@ -126,10 +126,8 @@ def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | No
     """The state without pressure, under gravity where there is any; why not all of gravity."""
     state = newton.assembly.at_rest()
     newton.assembly.look_around(state)
-    newton.assembly.linearize(state)
-    state = newton.with_reaction(state)
     if body.gravity is None:
-        return state, None
+        return _with_reaction(newton, state), None
     share, step, is_unstable = 0.0, _GRAVITY_STEP, False
     while share < 1.0:
         body.gravity.share = min(share + step, 1.0)
@@ -140,9 +138,15 @@ def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | No
         step, is_unstable = step / 2, is_unstable or result.is_unstable
         if step < _SMALLEST_GRAVITY_STEP:
             body.gravity.share = share
-            return state, _too_heavy(share, result.reason, is_unstable)
+            failure = _too_heavy(share, result.reason, is_unstable)
+            return _with_reaction(newton, state), failure
     # Once more, from as near as that: the force on a plate shows every micrometre.
     return newton.solve(state).state or state, None
+
+
+def _with_reaction(newton: Newton, state: State) -> State:
+    newton.assembly.linearize(state)
+    return newton.with_reaction(state)
 
 
 def _too_heavy(share: float, failure: str, is_unstable: bool) -> tuple[Status, str]:

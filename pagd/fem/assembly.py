@@ -116,6 +116,16 @@ class Assembly:
                 term.energy(state.unknowns, state.load)
         return any(self.touching)
 
+    def would_touch(self, unknowns: FloatArray, load: float) -> bool:
+        """Whether anything touches at ``unknowns`` (size,); couples nothing that is near there."""
+        with self.clock.part("contact search"):
+            for term in self._touching:
+                if isinstance(term, SearchingTerm):
+                    term.look(unknowns)
+                else:
+                    term.energy(unknowns, load)
+        return any(self.touching)
+
     def linearize(self, state: State) -> tuple[float, FloatArray, FloatArray]:
         """Energy, residual (size,) and matrix values (z,) of the pattern.
 

@@ -109,20 +109,27 @@ class FaceContact:
 
     def update(self, unknowns: FloatArray) -> bool:
         """Look for near faces at a state; whether ``dofs`` has grown by new pairs."""
-        positions = self._positions(unknowns)
-        self._project(positions, keeps=self.law.reach)
+        self.look(unknowns)
         if self.smallest_gap <= -self.law.deepest:
-            # A step has jumped right through a wall; a search would not know it from its far side.
             return False
-        self._search(positions, self.law.reach)
-        self._project(positions, keeps=-np.inf)
         grown = not np.isin(self._near_keys(self.law.reach), self._keys).all()
         if grown:
             self._keys = np.union1d(self._keys, self._near_keys(2 * self.law.reach))
             slave, master = np.divmod(self._keys, len(self._masters))
             self.dofs = node_dofs(np.hstack([self._slaves[slave], self._masters[master]]))
-        self._pairs = self._numbers(self._candidate_keys())
+            self._pairs = self._numbers(self._candidate_keys())
         return grown
+
+    def look(self, unknowns: FloatArray) -> None:
+        """Look for near faces at a state; ``dofs`` stays as it is."""
+        positions = self._positions(unknowns)
+        self._project(positions, keeps=self.law.reach)
+        if self.smallest_gap <= -self.law.deepest:
+            # A step has jumped right through a wall; a search would not know it from its far side.
+            return
+        self._search(positions, self.law.reach)
+        self._project(positions, keeps=-np.inf)
+        self._pairs = self._numbers(self._candidate_keys())
 
     def gap_at_rest(self) -> float:
         """Smallest gap (mm) of the undeformed body; infinite where no two faces are near."""

@@ -12,7 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.fem.assembly import State
-from pagd.fem.dense_output import FEWEST, at_load, state_between, states_to_use
+from pagd.fem.dense_output import (
+    FEWEST,
+    at_load,
+    state_between,
+    states_to_use,
+    unknowns_at,
+)
 from pagd.fem.newton import Newton, NewtonResult
 from pagd.fem.stability import Critical, StabilityWatch
 
@@ -139,8 +145,8 @@ UNSTABLE = "the equilibrium is unstable"
 # So much of the way to where stability is lost is the next step.
 _APPROACH = 0.6
 
-# A load that was tried in vain is tried again from so much nearer at least.
-_NEARER = 0.25
+# A load that was tried in vain is tried again from no more than so much of that step.
+_AGAIN_FROM = 0.25
 
 # What is foretold within this share of the load beyond the last state explains why the path ends.
 _AHEAD = 0.05
@@ -206,8 +212,8 @@ class Continuation:
         #: The last states of the path: those a first guess is made of, and one to judge it by.
         self.states: list[State] = []
         self._touches = False
-        # A load tried in vain, and from how far.
-        self._in_vain, self._in_vain_from = math.inf, 0.0
+        # A load tried in vain, and the step to it.
+        self._in_vain, self._vain_step = math.inf, 0.0
         self._watch = StabilityWatch(newton)
 
     def follow(
@@ -228,14 +234,15 @@ class Continuation:
             result = self._try(load, known)
             correction = result.corrections[0] if result.corrections else math.inf
             path = tried(path, result)
-            between: list[Step] = []
-            state = result.state
+            taken, between, state = load - before.load, list[Step](), result.state
             if state is None or result.is_unstable:
                 path, state = failed(path, result, load), None
             else:
                 path, found = self._pass_over(state, wanted, path)
-                state, between = (None, []) if found is None else (state, found)
-            taken = load - before.load
+                if isinstance(found, list):
+                    between = found
+                else:
+                    (load, result), state = found, None
             if state is None:
                 rejections += 1
                 path, step = self._retry(path, load, result, known, rejections)
@@ -267,7 +274,7 @@ class Continuation:
         correction = result.corrections[0] if result.corrections else math.inf
         step = control.retry_step(load - last, correction, known, rejections)
         if result.iterations > 1 and load <= self._in_vain:
-            self._in_vain, self._in_vain_from = load, load - last
+            self._in_vain, self._vain_step = load, load - last
         share = (load - last) / load
         given_up = step < control.smallest or rejections > control.patience
         given_up = given_up or share <= control.resolution * _UNEXPLAINED
@@ -298,12 +305,12 @@ class Continuation:
         return replace(path, failure=UNSTABLE, is_unstable=True, critical=critical)
 
     def _next_load(self, wanted: Sequence[float], step: float) -> float:
-        """The load after a step, but not yet one that was tried in vain."""
+        """The load after a step; one that was tried in vain only from much nearer."""
         resolution, last, in_vain = self._control.resolution, self.states[-1].load, self._in_vain
         load = self._load_after(wanted, step)
-        if not resolution or last + step <= in_vain:
+        if not resolution or max(load, last + step) < in_vain:
             return load
-        near = max(2 * resolution * in_vain, _NEARER * self._in_vain_from)
+        near = max(2 * resolution * in_vain, _AGAIN_FROM * self._vain_step)
         return min(load, in_vain if in_vain - last <= near else (last + in_vain) / 2)
 
     def _load_after(self, wanted: Sequence[float], step: float) -> float:
@@ -312,7 +319,7 @@ class Continuation:
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)
         load = self._step_towards(wanted[-1], step)
-        if load > wanted[0] and self._newton.assembly.touches(self._guess(load)):
+        if load > wanted[0] and self._would_touch(load):
             # Contact is hard to step into from afar.
             return self._step_towards(wanted[0], step)
         near = _NEAR * (load - self.states[-1].load)
@@ -332,21 +339,24 @@ class Continuation:
         # A guess half-way back would not have the values that are prescribed at its load.
         before = None if self._boundary else self.states[-1]
         trust = self._control.largest_first(known)
-        guess = self._guess(load, known)
+        guess = at_load(self.states[-known:], load)
         if self._boundary:
             self._boundary(load, guess.unknowns)
         return self._newton.solve(guess, before=before, largest_first=trust)
 
-    def _guess(self, load: float, known: int | None = None) -> State:
-        return at_load(self.states[-(known or self._known()) :], load)
+    def _would_touch(self, load: float) -> bool:
+        """Whether anything touches at the first guess for a load."""
+        states = self.states[-self._known() :]
+        guess = unknowns_at([s.unknowns for s in states], [s.load for s in states], load)
+        return self._newton.assembly.would_touch(guess, load)
 
     def _pass_over(
         self, reached: State, wanted: Sequence[float], path: LoadPath
-    ) -> tuple[LoadPath, list[Step] | None]:
+    ) -> tuple[LoadPath, list[Step] | tuple[float, NewtonResult]]:
         """Steps at the wanted loads on the way to a state; it is the last of the path then.
 
-        None where no state at a wanted load was found; the path then has the reason as its
-        ``failure``.
+        Where no state was found at one of these loads, that load and what the try led to; the path
+        then has the reason as its ``failure``.
         """
         start, states, steps = path, [*self.states, reached], []
         touches = self._control.dense and self._newton.assembly.touches(reached)
@@ -366,7 +376,8 @@ class Continuation:
             path = tried(path, result)
             if result.state is None or result.is_unstable:
                 work = replace(start, iterations=path.iterations, corrections=path.corrections)
-                return replace(failed(work, result), failure=result.reason or UNSTABLE), None
+                path = replace(failed(work, result, load), failure=result.reason or UNSTABLE)
+                return path, (load, result)
             path = longer(path, load, result)
             states.insert(place, result.state)
             steps.append(Step(result.state, result.iterations, True))

@@ -22,8 +22,9 @@ FloatArray = NDArray[np.float64]
 # A polynomial of lower degree is taken where its error is no more than so many times the least.
 _AS_GOOD = 3.0
 
-# Two polynomials agree on a reaction up to this share of the largest one around it.
-_REACTION = 2e-3
+# Two polynomials agree on a reaction up to this share of it, and up to this share of the largest
+# one around it.
+_REACTION = 5e-3, 1e-3
 
 #: Fewer states tell nothing of the error.
 FEWEST = 4
@@ -37,11 +38,19 @@ def lagrange_factors(places: Sequence[float], place: float) -> list[float]:
     ]
 
 
+def unknowns_at(
+    unknowns: Sequence[FloatArray], places: Sequence[float], place: float
+) -> FloatArray:
+    """The Lagrange polynomial through ``unknowns``, each (size,), at ``place``."""
+    factors = lagrange_factors(places, place)
+    return sum((f * u for f, u in zip(factors, unknowns, strict=True)), np.zeros(1))
+
+
 def interpolate(states: Sequence[State], places: Sequence[float], place: float) -> State:
     """The Lagrange polynomial through ``states`` at ``places``, the load included."""
     factors = lagrange_factors(places, place)
+    unknowns = unknowns_at([s.unknowns for s in states], places, place)
     load = sum(f * s.load for f, s in zip(factors, states, strict=True))
-    unknowns = sum((f * s.unknowns for f, s in zip(factors, states, strict=True)), np.zeros(1))
     internal = tuple(
         np.asarray(sum(f * s.internal[k] for f, s in zip(factors, states, strict=True)))
         for k in range(len(states[0].internal))
@@ -70,8 +79,7 @@ def states_to_use(
     last, errors = states[-1], {}
     for count in range(2, min(most, len(states) - 1) + 1):
         before = states[-count - 1 : -1]
-        factors = lagrange_factors(places[-count - 1 : -1], places[-1])
-        guess = sum((f * s.unknowns for f, s in zip(factors, before, strict=True)), np.zeros(1))
+        guess = unknowns_at([s.unknowns for s in before], places[-count - 1 : -1], places[-1])
         errors[count] = newton.largest_displacement(guess - last.unknowns)
     enough = _AS_GOOD * min(errors.values())
     best = next(count for count, error in errors.items() if error <= enough)
@@ -90,11 +98,22 @@ def state_between(newton: Newton, states: Sequence[State], load: float) -> State
     """
     if len(states) < FEWEST:
         return None
-    found, coarser = at_load(states, load), at_load(states[1:], load)
-    difference = newton.largest_displacement(found.unknowns - coarser.unknowns)
-    if not difference < newton.settings.tolerance:
+    unknowns, loads = [s.unknowns for s in states], [s.load for s in states]
+    coarser = unknowns_at(unknowns[1:], loads[1:], load)
+    difference = newton.largest_displacement(unknowns_at(unknowns, loads, load) - coarser)
+    if not difference < newton.settings.tolerance or not _reactions_agree(states, load):
         return None
-    largest = max(abs(state.reaction) for state in states)
-    if abs(found.reaction - coarser.reaction) > _REACTION * largest:
-        return None
+    found = at_load(states, load)
     return None if newton.assembly.touches(found) else found
+
+
+def _reactions_agree(states: Sequence[State], load: float) -> bool:
+    """Whether the polynomials of :func:`state_between` agree on the reaction, if there is any."""
+    loads, reactions = [s.load for s in states], np.array([s.reaction for s in states])
+    if not np.isfinite(reactions).all():
+        return True
+    found = float(lagrange_factors(loads, load) @ reactions)
+    coarser = float(lagrange_factors(loads[1:], load) @ reactions[1:])
+    share, share_of_largest = _REACTION
+    largest = float(np.abs(reactions).max())
+    return abs(found - coarser) <= max(share * abs(found), share_of_largest * largest)

@@ -242,12 +242,11 @@ class Newton:
             unstable = self._unstable_directions()
             trial = _loaded(self.assembly.advance(state, correction), load)
             trusted = 2 * self.assembly.excess
-            is_near = size < settings.tolerance
-            settled = _Settled(trial, is_near)
+            settled = _Settled(trial, size < settings.tolerance)
             # Where stability has to be judged, it is at the solution, by factors of its own.
-            if unstable <= falls and (not is_near or self._is_stiff):
-                settled = self._settle(trial, trusted, corrections, conjugate)
-                settled = replace(settled, converged=is_near or settled.converged)
+            if unstable <= falls and (not settled.converged or self._refines):
+                further = self._settle(trial, trusted, corrections, conjugate)
+                settled = replace(further, converged=settled.converged or further.converged)
             if settled.converged:
                 found = self.with_reaction(settled.state)
                 return NewtonResult(
@@ -267,10 +266,10 @@ class Newton:
         return float(np.abs(correction[: self.displacements]).max())
 
     @property
-    def _is_stiff(self) -> bool:
-        """Whether a reaction is wanted that displacements have to be known better for.
+    def _refines(self) -> bool:
+        """Whether states are solved for more exactly, for the sake of the reaction.
 
-        Where something touches they are not, at the price of more factorisations.
+        Not where something touches: that would take more factorisations.
         """
         return self._reaction is not None and not any(self.assembly.touching)
 
@@ -283,7 +282,7 @@ class Newton:
         but not ever smaller: where other points touch than did, it takes two of them to tell.
         """
         touching = self.assembly.touching
-        share = _SHARE_FOR_REACTION if self._is_stiff else _SHARE
+        share = _SHARE_FOR_REACTION if self._refines else _SHARE
         for count in range(self.settings.reuses):
             energy, residual = self.assembly.residual_near(state)
             if not np.isfinite(energy) or self.assembly.excess > trusted:

@@ -118,6 +118,10 @@ class SearchingTerm(EnergyTerm, Protocol):
         """Look around at a state; whether ``dofs`` has grown."""
         ...
 
+    def look(self, unknowns: FloatArray) -> None:
+        """Look around at a state that is not to be assembled: ``dofs`` stays as it is."""
+        ...
+
 
 @runtime_checkable
 class TouchingTerm(EnergyTerm, Protocol):

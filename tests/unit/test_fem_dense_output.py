@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -79,7 +80,9 @@ def test_reactions_are_interpolated_and_have_to_agree() -> None:
     found = state_between(method, [bent(load, 0.0) for load in loads], 6.0)
     assert found is not None
     assert found.reaction == pytest.approx(180.0, rel=1e-12)
-    assert state_between(method, [bent(load, 5.0) for load in loads], 6.0) is None
+    # A kink of 1 makes them differ by 2 at 6, where half a percent of the reaction is 0.9.
+    assert state_between(method, [bent(load, 0.3) for load in loads], 6.0) is not None
+    assert state_between(method, [bent(load, 1.0) for load in loads], 6.0) is None
 
 
 def test_one_in_the_middle_lets_others_be_interpolated(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,6 +205,77 @@ def test_steps_do_not_pass_over_loads_where_something_touches() -> None:
     steps, _ = follow(loose(Touched(stiffening=1.0)), growth=5.0)
     assert [step.state.load for step in steps if step.wanted] == WANTED
     assert not any(step.interpolated for step in steps)
+
+
+@dataclass
+class Wall(Spring):
+    """A spring that touches something, softly, from 1.2 on."""
+
+    excess: float = 0.0
+    seen: float = 0.0
+
+    def energy(self, unknowns: np.ndarray, load: float) -> float:
+        self.seen = float(unknowns[0])
+        return Spring.energy(self, unknowns, load)
+
+    @property
+    def touching(self) -> int:
+        return int(abs(self.seen) > 1.2)
+
+
+@pytest.mark.parametrize(("spring", "next_load"), [(Spring, 10.0), (Wall, 4.0)])
+def test_steps_do_not_pass_over_loads_to_where_the_guess_touches(
+    spring: type[Spring], next_load: float
+) -> None:
+    """It touches from the load 2.928 on, between two that are wanted."""
+    listening = Jumpy(loose(spring(stiffening=1.0)), avoided=-1.0)
+    steps: list[Step] = []
+    control = StepControl(first=0.5, wanted_correction=50.0, dense=True, growth=100.0)
+    Continuation(listening, control).follow(WANTED, steps.append)  # type: ignore[arg-type]
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    assert listening.tried[:3] == [0.5, 2.0, next_load]
+
+
+class Obstinate:
+    """A linear path on which one load is not reached by steps of more than a given size."""
+
+    def __init__(self, refused: float, smallest: float) -> None:
+        self.method = loose(Spring())
+        self.refused, self.smallest = refused, smallest
+        self.steps: list[float] = []
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.method, name)
+
+    def solve(self, guess: State, before: State, **given: object) -> NewtonResult:
+        if guess.load >= self.refused:
+            self.steps.append(guess.load - before.load)
+            if self.steps[-1] > self.smallest:
+                return NewtonResult(None, 3, (1.0,), "refused")
+        return self.method.solve(guess, before=before, **given)  # type: ignore[arg-type]
+
+
+def test_a_load_tried_in_vain_is_tried_again_from_a_quarter_as_far() -> None:
+    obstinate = Obstinate(refused=10.0, smallest=0.5)
+    steps, path = follow(obstinate, growth=100.0, resolution=0.01)
+    assert not path.failure
+    assert path.load == WANTED[-1]
+    assert len(obstinate.steps) > 2
+    assert all(b <= 0.25 * a for a, b in pairwise(obstinate.steps))
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+
+
+def test_where_a_load_passed_over_is_not_found_that_one_is_tried_in_vain() -> None:
+    """The state at 6 is found only from near; what was reached beyond it is no load in vain."""
+    exact = newton(Spring(stiffening=1.0), tolerance=1e-12, iterations=20)
+    plain, _ = follow(exact, growth=5.0, resolution=0.01)
+    passed = [s.state.load for s in plain if s.wanted]
+    jumpy = Jumpy(exact, passed[2])
+    steps, path = follow(jumpy, growth=5.0, resolution=0.01)
+    assert path.rejected == 1
+    assert [step.state.load for step in steps if step.wanted] == WANTED
+    after = jumpy.tried[jumpy.tried.index(passed[2]) + 1]
+    assert after < passed[2]
 
 
 def test_the_observer_can_stop_at_a_state_between() -> None:
