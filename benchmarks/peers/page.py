@@ -10,7 +10,7 @@ from performance.page import table, wrapped
 
 from peers.bodies import Body
 from peers.comparison import Comparison, Ratio
-from peers.converged import Converged
+from peers.converged import FEWEST_MESHES, Converged
 from peers.solved import Solved
 from peers.studies import EqualErrorRow, SameMeshRow
 
@@ -66,10 +66,11 @@ def _converged_notes(designs: Iterable[str], exact: Mapping[str, Converged]) -> 
         tip = exact[design]
         length = math.hypot(*tip.tip_mm[-1])
         sizes = ", ".join(f"{mesh['size_mm']:g}" for mesh in tip.meshes)
+        left_out = "one of them left out, or " if len(tip.meshes) > FEWEST_MESHES else ""
         yield (
             f"- {design}: the mesh-converged tip moves by {_place(tip.tip_mm[-1])} mm at "
             f"{tip.pressure_kPa[-1]:g} kPa, extrapolated over meshes of {sizes} mm; with "
-            "one of three left out, or another order of the error, it would be off by "
+            f"{left_out}another order of the error, it would be off by "
             f"{_percent(tip.spread_mm[-1] / length)} at most."
         )
 

@@ -315,9 +315,12 @@ class TestSections:
         bodies = [BODY, replace(BODY, size_mm=3.0)]
         tried = list(zip(bodies, finer, [0.4, 0.2], strict=True))
         row = EqualErrorRow(BODY, PAGD, 0.05, 10.0, tried, result)
-        exact = {"bending": replace(EXACT, spread_mm=[0.1, 0.2])}
-        text = " ".join(page.equal_error_text("command", [row], 2, exact).split())
-        assert "or another order of the error, it would be off by 1.0 % at most" in text
+        tip = replace(EXACT, spread_mm=[0.1, 0.2], meshes=2 * [{"size_mm": 6}])
+        text = " ".join(page.equal_error_text("command", [row], 2, {"bending": tip}).split())
+        assert "with another order of the error, it would be off by 1.0 % at most" in text
+        more = {"bending": replace(tip, meshes=3 * [{"size_mm": 6}])}
+        told = " ".join(page.equal_error_text("command", [row], 2, more).split())
+        assert "with one of them left out, or another order of the error" in told
         assert "takes **more than 400 times** as long" in text
         assert "by the trend of its last two: 6,400 times" in text
 
