@@ -94,6 +94,8 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
         smallest=actuation.smallest_step_kPa * _KPA,
         growth=_GROWTH,
         dense=True,
+        # With the tip held, contact is hard to step into from afar.
+        wary=held,
         foresight=_RESOLUTION,
         resolution=_RESOLUTION if held else 0.0,
     )

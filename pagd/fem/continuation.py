@@ -53,6 +53,8 @@ class StepControl:
     dense
         Whether steps may pass over wanted loads where nothing touches; the states there are
         interpolated (see :mod:`pagd.fem.dense_output`), or solved for where that is too rough.
+    wary
+        Whether steps do not pass over wanted loads to where the first guess touches.
     foresight
         How near, as a share of the load, a path is followed to where it is foretold to lose its
         stability (see :mod:`pagd.fem.stability`) once a try beyond that has failed; 0: foretell
@@ -75,6 +77,7 @@ class StepControl:
     trust: float = 4.0
     patience: int = 20
     dense: bool = False
+    wary: bool = False
     foresight: float = 0.0
     resolution: float = 0.0
 
@@ -319,8 +322,7 @@ class Continuation:
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)
         load = self._step_towards(wanted[-1], step)
-        if load > wanted[0] and self._would_touch(load):
-            # Contact is hard to step into from afar.
+        if self._control.wary and load > wanted[0] and self._would_touch(load):
             return self._step_towards(wanted[0], step)
         near = _NEAR * (load - self.states[-1].load)
         return next((w for w in wanted if abs(w - load) <= near), load)

@@ -223,14 +223,16 @@ class Wall(Spring):
         return int(abs(self.seen) > 1.2)
 
 
-@pytest.mark.parametrize(("spring", "next_load"), [(Spring, 10.0), (Wall, 4.0)])
-def test_steps_do_not_pass_over_loads_to_where_the_guess_touches(
-    spring: type[Spring], next_load: float
+@pytest.mark.parametrize(
+    ("spring", "wary", "next_load"), [(Spring, True, 10.0), (Wall, True, 4.0), (Wall, False, 10.0)]
+)
+def test_wary_steps_do_not_pass_over_loads_to_where_the_guess_touches(
+    spring: type[Spring], wary: bool, next_load: float
 ) -> None:
     """It touches from the load 2.928 on, between two that are wanted."""
     listening = Jumpy(loose(spring(stiffening=1.0)), avoided=-1.0)
     steps: list[Step] = []
-    control = StepControl(first=0.5, wanted_correction=50.0, dense=True, growth=100.0)
+    control = StepControl(first=0.5, wanted_correction=50.0, dense=True, growth=100.0, wary=wary)
     Continuation(listening, control).follow(WANTED, steps.append)  # type: ignore[arg-type]
     assert [step.state.load for step in steps if step.wanted] == WANTED
     assert listening.tried[:3] == [0.5, 2.0, next_load]

@@ -102,11 +102,10 @@ pressure is that of elastomer, paper and contact, and under gravity its potentia
     Table(
         "Steps with a held tip",
         ("designs/*/solve/blocked_force.parquet",),
-        "a step of the analysis of the blocked force",
+        "a step, or an interpolated state, of the analysis of the blocked force",
         BLOCKED,
         """\
-There is no such file where `solve.blocked_force` is `none`. No state is interpolated here: a force
-is known far worse between states than displacements are.""",
+There is no such file where `solve.blocked_force` is `none`.""",
     ),
     Table(
         "Deformed states",
