@@ -29,6 +29,7 @@ FloatArray = NDArray[np.float64]
 
 FILE_NAME = "converged_tips.json"
 
+#: Fewer give no limit.
 FEWEST_MESHES = 2
 
 #: Order of the error in the size of the elements: near inward edges of 90°, such as those of the
