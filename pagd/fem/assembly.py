@@ -47,7 +47,8 @@ def _add_vector(dofs: IntArray, local: FloatArray, result: FloatArray) -> None:
 
 
 @compiled
-def _add_matrix(positions: NDArray[np.int32], local: FloatArray, result: FloatArray) -> None:
+def add_matrix(positions: NDArray[np.int32], local: FloatArray, result: FloatArray) -> None:
+    """Add entries (elements, entries) of elements to those of a matrix at their ``positions``."""
     for e in range(positions.shape[0]):
         for i in range(positions.shape[1]):
             result[positions[e, i]] += local[e, i]
@@ -82,10 +83,13 @@ class Assembly:
 
     def _make_room(self) -> None:
         with self.clock.part("pattern"):
-            self.pattern: Pattern = build_pattern([t.dofs for t in self.terms], self._numbering)
+            self.pattern = self._build_pattern()
             self._systems = [ElementSystem.of(t.dofs) for t in self.terms]
         # One more place than there are entries: what concerns held unknowns goes there.
         self._values = np.empty(self.pattern.entries + 1)
+
+    def _build_pattern(self) -> Pattern:
+        return build_pattern([t.dofs for t in self.terms], self._numbering)
 
     @property
     def iterates_stresses(self) -> bool:
@@ -100,6 +104,19 @@ class Assembly:
     def at_rest(self) -> State:
         """The undeformed, unloaded state."""
         return State(0.0, np.zeros(self.size), tuple(t.internal_at_rest() for t in self.terms))
+
+    def settle(self, unknowns: FloatArray) -> None:
+        """Set, in place, those of ``unknowns`` (size,) that depend on others; here none do."""
+
+    def full(self, solution: FloatArray) -> FloatArray:
+        """All unknowns (size,) of a solution for the free ones; zero where they are held."""
+        result = np.zeros(self.size)
+        result[self.free] = solution
+        return result
+
+    def reduced(self, gradient: FloatArray, unknowns: FloatArray) -> FloatArray:
+        """A gradient (size,) at ``unknowns`` by those of them that depend on no others."""
+        return gradient
 
     def look_around(self, state: State) -> None:
         """Let the terms that search see what is near; :attr:`pattern` is a new one if it grew."""
@@ -144,14 +161,19 @@ class Assembly:
         energy = 0.0
         residual = np.zeros(self.size)
         self._values[:] = 0.0
-        parts = zip(self.terms, state.internal, self._systems, self.pattern.maps, strict=True)
+        maps = self.pattern.maps[: len(self.terms)]
+        parts = zip(self.terms, state.internal, self._systems, maps, strict=True)
         for term, internal, system, positions in parts:
             energy += term.linearize(state.unknowns, internal, state.load, system)
             if not np.isfinite(energy):
                 return np.inf, residual, self._values[:-1]
             _add_vector(term.dofs, system.residual, residual)
-            _add_matrix(positions, system.tangent, self._values)
+            add_matrix(positions, system.tangent, self._values)
+        self._reduce_system(state, residual)
         return energy, residual, self._values[:-1]
+
+    def _reduce_system(self, state: State, residual: FloatArray) -> None:
+        """Make residual and tangent those of what depends on nothing else; here they are."""
 
     def residual_near(self, state: State) -> tuple[float, FloatArray]:
         """Energy and residual (size,) of a state near the one linearised last.

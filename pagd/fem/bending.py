@@ -186,6 +186,8 @@ def bending_terms(
     clamped: IntArray | None = None,
     symmetry: IntArray | None = None,
     symmetry_axis: int = 1,
+    beyond: IntArray | None = None,
+    coupled: bool = False,
 ) -> list[QuadraticEnergy]:
     """The bending energy of a flat sheet as terms of the potential.
 
@@ -199,18 +201,30 @@ def bending_terms(
         Numbers of the nodes on the clamped part and on the symmetry plane.
     symmetry_axis
         The axis (0, 1, 2) normal to the symmetry plane.
+    beyond
+        Faces (B, 6) of a sheet that goes on where this one ends: of their energy only that of the
+        hinges between both counts.
+    coupled
+        See :class:`QuadraticEnergy`.
 
     Raises
     ------
     InputError
         Where the sheet is not flat or three triangles share an edge.
     """
+    own = len(faces)
+    if beyond is not None:
+        faces = np.vstack([faces, beyond])
     triangles = _triangles(points, faces)
     sides = _sides(faces)
     slopes, moments, length = _side_operators(triangles, sides, faces, sheet)
     stiffness = _PENALTY * sheet.bending_stiffness * length / triangles.areas[sides.triangle]
     first, second, boundary = _pair_up(sides)
-    terms = [QuadraticEnergy("bending", faces, _face_matrices(triangles, sheet))]
+    counts = np.minimum(sides.triangle[first], sides.triangle[second]) < own
+    first, second = first[counts], second[counts]
+    boundary = boundary[sides.triangle[boundary] < own]
+    bending = _face_matrices(triangles, sheet)[:own]
+    terms = [QuadraticEnergy("bending", faces[:own], bending, coupled=coupled)]
 
     nodes, join = _joined_nodes(faces[sides.triangle[first]], faces[sides.triangle[second]])
     # The outward normal of the second side is minus that of the first, so that the
@@ -219,7 +233,7 @@ def bending_terms(
     means = join(moments[first], moments[second]) / 2
     penalty = stiffness[first] + stiffness[second]
     matrices = _edge_matrices(jumps, means, penalty, length[first])
-    terms.append(QuadraticEnergy("hinges", nodes, matrices))
+    terms.append(QuadraticEnergy("hinges", nodes, matrices, coupled=coupled))
 
     for held, components in (
         (clamped, (0, 1, 2)),
@@ -233,5 +247,5 @@ def bending_terms(
             # it has in an interior edge, hence four times the penalty.
             matrices = _edge_matrices(slopes[on], moments[on], 4 * stiffness[on], length[on])
             nodes = faces[sides.triangle[on]]
-            terms.append(QuadraticEnergy("held edges", nodes, matrices, components))
+            terms.append(QuadraticEnergy("held edges", nodes, matrices, components, coupled))
     return terms

@@ -87,7 +87,7 @@ class FaceContact:
     ) -> None:
         self.law = law or ContactLaw()
         self._points = points
-        self._slaves, self._masters = slaves, masters
+        self.slaves, self._masters = slaves, masters
         rule = _RULE
         self._values = shapes.triangle_values(rule.points)
         self._areas = face_areas(points, slaves, rule)
@@ -103,9 +103,9 @@ class FaceContact:
         self._pressures, self._slopes = np.zeros_like(self._areas), np.zeros_like(self._areas)
 
     def _forget(self) -> None:
-        self._starts = np.zeros(len(self._slaves) + 1, np.int64)
+        self._starts = np.zeros(len(self.slaves) + 1, np.int64)
         self._candidates = np.zeros(0, np.int64)
-        self._found = _Found.room(len(self._slaves), len(self._values))
+        self._found = _Found.room(len(self.slaves), len(self._values))
 
     def update(self, unknowns: FloatArray) -> bool:
         """Look for near faces at a state; whether ``dofs`` has grown by new pairs."""
@@ -116,7 +116,7 @@ class FaceContact:
         if grown:
             self._keys = np.union1d(self._keys, self._near_keys(2 * self.law.reach))
             slave, master = np.divmod(self._keys, len(self._masters))
-            self.dofs = node_dofs(np.hstack([self._slaves[slave], self._masters[master]]))
+            self.dofs = node_dofs(np.hstack([self.slaves[slave], self._masters[master]]))
             self._pairs = self._numbers(self._candidate_keys())
         return grown
 
@@ -174,7 +174,7 @@ class FaceContact:
         found = self._found
         linearize_contact(
             positions,
-            self._slaves,
+            self.slaves,
             self._masters,
             self._values,
             self._areas,
@@ -202,7 +202,7 @@ class FaceContact:
         advance_pressures(
             self._last_positions,
             correction,
-            self._slaves,
+            self.slaves,
             self._masters,
             self._values,
             self._candidates,
@@ -254,7 +254,7 @@ class FaceContact:
 
     def _search(self, positions: FloatArray, distance: float) -> None:
         """Candidates: masters whose ball meets that of a slave, widened by a distance in mm."""
-        centres, radii = _balls(positions, self._slaves)
+        centres, radii = _balls(positions, self.slaves)
         others, sizes = _balls(positions, self._masters)
         largest = distance + sizes.max(initial=0.0)
         near = KDTree(others).query_ball_point(centres, radii + largest, return_sorted=True)
@@ -266,7 +266,7 @@ class FaceContact:
         found = self._found
         kernels.find_gaps(
             positions,
-            self._slaves,
+            self.slaves,
             self._masters,
             self._values,
             self._starts,
@@ -279,7 +279,7 @@ class FaceContact:
         )
 
     def _candidate_keys(self) -> IntArray:
-        slaves = np.repeat(np.arange(len(self._slaves)), np.diff(self._starts))
+        slaves = np.repeat(np.arange(len(self.slaves)), np.diff(self._starts))
         return np.asarray(slaves * len(self._masters) + self._candidates)
 
     def _near_keys(self, distance: float) -> IntArray:

@@ -142,6 +142,14 @@ class LoadPath:
     unstable_load: float = math.inf
 
 
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """A path so far: its last states, rising, and how it went."""
+
+    states: Sequence[State]
+    path: LoadPath = LoadPath(0.0, 0, 0, 0)
+
+
 #: Why a path ends where Newton's method converged, but on states that nothing rests in.
 UNSTABLE = "the equilibrium is unstable"
 
@@ -220,17 +228,25 @@ class Continuation:
         self._watch = StabilityWatch(newton)
 
     def follow(
-        self, loads: Sequence[float], observe: Observer, start: State | None = None
+        self,
+        loads: Sequence[float],
+        observe: Observer,
+        start: State | None = None,
+        begun: Begun | None = None,
     ) -> LoadPath:
         """Raise the load through each of ``loads``, which must increase.
 
-        From ``start``, an equilibrium, or from rest. ``observe`` gets every converged step and may
-        return a reason to stop. A step to an unstable equilibrium counts as one that failed.
+        From ``start``, an equilibrium, or from rest, or on from a path that has ``begun``.
+        ``observe`` gets every converged step and may return a reason to stop. A step to an unstable
+        equilibrium counts as one that failed.
         """
         control, wanted = self._control, list(loads)
-        path = LoadPath(0.0, 0, 0, 0)
-        self.states, self._in_vain = [start or self._newton.assembly.at_rest()], math.inf
+        begun = begun or Begun((start or self._newton.assembly.at_rest(),))
+        path = replace(begun.path, failure="", is_unstable=False, unstable_load=math.inf)
+        self.states, self._in_vain = list(begun.states[-control.order - 2 :]), math.inf
         step, rejections = control.first, 0
+        if len(self.states) > 1:
+            step = self.states[-1].load - self.states[-2].load
         while wanted:
             known, before = self._known(), self.states[-1]
             load = self._next_load(wanted, step)
@@ -318,7 +334,7 @@ class Continuation:
 
     def _load_after(self, wanted: Sequence[float], step: float) -> float:
         """The load after a step; the way to a load to land on is divided evenly."""
-        passes = self._control.dense and not self._boundary and len(self.states) >= FEWEST - 1
+        passes = self._control.dense and len(self.states) >= FEWEST - 1
         if not passes or self._touches:
             return self._step_towards(wanted[0], step)
         load = self._step_towards(wanted[-1], step)
@@ -338,18 +354,26 @@ class Continuation:
         return states_to_use(self._newton, self.states, loads, self._control.order)
 
     def _try(self, load: float, known: int) -> NewtonResult:
-        # A guess half-way back would not have the values that are prescribed at its load.
-        before = None if self._boundary else self.states[-1]
         trust = self._control.largest_first(known)
-        guess = at_load(self.states[-known:], load)
+        guess = self._prescribed(at_load(self.states[-known:], load))
+        return self._newton.solve(guess, before=self._back(self.states[-1]), largest_first=trust)
+
+    def _prescribed(self, guess: State) -> State:
+        """The guess, with the values that are prescribed at its load."""
         if self._boundary:
-            self._boundary(load, guess.unknowns)
-        return self._newton.solve(guess, before=before, largest_first=trust)
+            self._boundary(guess.load, guess.unknowns)
+            self._newton.assembly.settle(guess.unknowns)
+        return guess
+
+    def _back(self, before: State) -> State | None:
+        """The state that a guess may be shortened towards; it would lack prescribed values."""
+        return None if self._boundary else before
 
     def _would_touch(self, load: float) -> bool:
         """Whether anything touches at the first guess for a load."""
         states = self.states[-self._known() :]
         guess = unknowns_at([s.unknowns for s in states], [s.load for s in states], load)
+        self._newton.assembly.settle(guess)
         return self._newton.assembly.would_touch(guess, load)
 
     def _pass_over(
@@ -374,7 +398,8 @@ class Continuation:
             load = left.pop(0 if touches else len(left) // 2)
             place = bisect(states, load, key=_load)
             near = states[place - 1 : place + 1] if touches else self._around(states, load)
-            result = self._newton.solve(at_load(near, load), before=states[place - 1])
+            guess = self._prescribed(at_load(near, load))
+            result = self._newton.solve(guess, before=self._back(states[place - 1]))
             path = tried(path, result)
             if result.state is None or result.is_unstable:
                 work = replace(start, iterations=path.iterations, corrections=path.corrections)
@@ -387,7 +412,8 @@ class Continuation:
         return path, sorted(steps, key=lambda step: step.state.load)
 
     def _interpolated(self, states: Sequence[State], load: float) -> State | None:
-        return state_between(self._newton, self._around(states, load), load)
+        found = state_between(self._newton, self._around(states, load), load)
+        return None if found is None else self._prescribed(found)
 
     def _around(self, states: Sequence[State], load: float) -> Sequence[State]:
         """Those of the states that a polynomial at a load is best made of, two beyond it if any."""

@@ -104,6 +104,7 @@ def state_between(newton: Newton, states: Sequence[State], load: float) -> State
     if not difference < newton.settings.tolerance or not _reactions_agree(states, load):
         return None
     found = at_load(states, load)
+    newton.assembly.settle(found.unknowns)
     return None if newton.assembly.touches(found) else found
 
 

@@ -227,7 +227,7 @@ class Membrane:
 
     def __init__(self, points: FloatArray, faces: IntArray, sheet: Sheet) -> None:
         self._points = points
-        self._faces = faces
+        self.faces = faces
         self._slopes = _fibre_slopes()
         self._squares = (np.einsum("ta,eai->eti", self._slopes, points[faces]) ** 2).sum(axis=-1)
         self._stiffness = _fibre_stiffness(points, faces, sheet)
@@ -247,7 +247,7 @@ class Membrane:
         return _linearize(
             self._points,
             unknowns,
-            self._faces,
+            self.faces,
             self._slopes,
             self._squares,
             self._stiffness,
@@ -265,7 +265,7 @@ class Membrane:
         return _residual_near(
             self._points,
             unknowns,
-            self._faces,
+            self.faces,
             self._slopes,
             self._squares,
             self._stiffness,
@@ -274,6 +274,11 @@ class Membrane:
             self._rows,
             self._forces,
         )
+
+    def lagging(self, internal: FloatArray, elements: IntArray) -> FloatArray:
+        """What the stored fibre forces lack; see :class:`pagd.fem.term.LaggingTerm`."""
+        lack = self._forces[elements] - internal[elements]
+        return np.asarray(np.einsum("et,etn->en", lack, self._rows[elements]))
 
     def advance(self, correction: FloatArray) -> FloatArray:
         """Fibre forces of the linearised strain, H (ε(u) + ε′(u) Δu)."""

@@ -290,7 +290,7 @@ class Newton:
             if not self.assembly.is_complete:
                 break
             is_alike = self.assembly.touching == touching
-            solution = self._full(self.solver.solve_again(-residual[self.assembly.free]))
+            solution = self.assembly.full(self.solver.solve_again(-residual[self.assembly.free]))
             correction, load, _ = self._with_load(state, solution, conjugate)
             size = self.largest_displacement(correction)
             if not size <= self.settings.contraction * corrections[-1]:
@@ -305,6 +305,7 @@ class Newton:
         """The guess, linearised, or what is left of it."""
         state = guess
         for _ in range(self.settings.shortenings):
+            self.assembly.settle(state.unknowns)
             self._look_around(state)
             if before is not None and self.assembly.excess_near > 0:
                 # To know that, no tangent is needed.
@@ -314,6 +315,7 @@ class Newton:
             if before is None or (np.isfinite(linearised[0]) and self.assembly.excess == 0):
                 return state, linearised
             state = _half_way(before, state)
+        self.assembly.settle(state.unknowns)
         self._look_around(state)
         return state, self.assembly.linearize(state)
 
@@ -330,10 +332,10 @@ class Newton:
         if self.assembly.pattern is not self._pattern:
             self._analyse()
         free = self.assembly.free
-        self._solution = self._full(self.solver.solve(values, -residual[free]))
+        self._solution = self.assembly.full(self.solver.solve(values, -residual[free]))
         if conjugate is not None:
             slopes = self._conjugate(state)[1]
-            self._by_load = self._full(self.solver.solve_again(slopes[free]))
+            self._by_load = self.assembly.full(self.solver.solve_again(slopes[free]))
 
     def _with_load(
         self, state: State, solution: FloatArray, conjugate: float | None
@@ -352,13 +354,8 @@ class Newton:
     def _conjugate(self, state: State) -> tuple[float, FloatArray]:
         if self.load_term is None:
             raise ValueError("to hold the conjugate of the load, Newton's method needs its term")
-        return self.load_term.conjugate(state.unknowns)
-
-    def _full(self, solution: FloatArray) -> FloatArray:
-        """All unknowns (size,), zero where they are held."""
-        result = np.zeros(self.assembly.size)
-        result[self.assembly.free] = solution
-        return result
+        value, slopes = self.load_term.conjugate(state.unknowns)
+        return value, self.assembly.reduced(slopes, state.unknowns)
 
     def _unstable_directions(self) -> int:
         """Directions in which the energy falls from the state of the last correction."""
@@ -382,6 +379,7 @@ class Newton:
         while fraction / 2 >= self.settings.smallest_fraction:
             fraction /= 2
             trial = _between(none, whole, fraction)
+            self.assembly.settle(trial.unknowns)
             last = fraction < 2 * self.settings.smallest_fraction
             energy, _ = self.assembly.residual_near(trial)
             if not np.isfinite(energy) or (self.assembly.excess > trusted and not last):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.fem.term import NO_INTERNAL, ElementSystem
+from pagd.fem.term import NO_INTERNAL, ElementSystem, node_dofs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -24,6 +24,9 @@ class QuadraticEnergy:
         Symmetric matrices (E, k, k), the same for every component.
     components
         The components that take part.
+    coupled
+        Whether one element has all components of its nodes, as nodes that are tied need it;
+        else each component has small elements of its own.
     """
 
     def __init__(
@@ -32,12 +35,17 @@ class QuadraticEnergy:
         nodes: IntArray,
         matrices: FloatArray,
         components: tuple[int, ...] = (0, 1, 2),
+        coupled: bool = False,
     ) -> None:
         self.name = name
-        # One small element per component: the components are not coupled.
-        self.dofs = np.concatenate([3 * nodes + i for i in components])
-        self._matrices = np.concatenate([matrices] * len(components))
-        rows, columns = np.triu_indices(matrices.shape[1])
+        if coupled:
+            taking_part = np.diag(np.isin(np.arange(3), components).astype(np.float64))
+            self.dofs = node_dofs(nodes)
+            self._matrices = np.kron(matrices, taking_part)
+        else:
+            self.dofs = np.concatenate([3 * nodes + i for i in components])
+            self._matrices = np.concatenate([matrices] * len(components))
+        rows, columns = np.triu_indices(self._matrices.shape[1])
         self._packed = self._matrices[:, rows, columns]
 
     def internal_at_rest(self) -> FloatArray:

@@ -192,6 +192,15 @@ class ElementPressureSolid:
         """Pressures (E, m) and stresses S* of the geometric part (E, 6 Q), zero at rest."""
         return np.hstack([np.zeros(self._changes.shape), self._stresses.at_rest()])
 
+    def internal_at(self, unknowns: FloatArray, pressures: FloatArray) -> FloatArray:
+        """Given ``pressures`` (E, m), and the stresses that the ``unknowns`` have."""
+        self._stresses.look(unknowns)
+        return np.hstack([pressures, self._stresses.advanced(np.zeros_like(unknowns))])
+
+    def pressures_of(self, internal: FloatArray) -> FloatArray:
+        """The pressures (E, m) among the internal variables."""
+        return self._split(internal)[0]
+
     def _split(self, internal: FloatArray) -> tuple[FloatArray, FloatArray]:
         count = self._changes.shape[1]
         stresses = internal[:, count:].reshape(*self.weights.shape, 6)
@@ -238,6 +247,13 @@ class ElementPressureSolid:
             self._slopes,
             self._changes,
         )
+
+    def lagging(self, internal: FloatArray, elements: IntArray) -> FloatArray:
+        """What the pressures lack, by the slopes; see :class:`pagd.fem.term.LaggingTerm`."""
+        stiffness, changes = self._stiffnesses[elements], self._changes[elements]
+        wanted = np.einsum("ecd,ed->ec", stiffness, changes)
+        lack = wanted - self._split(internal)[0][elements]
+        return np.asarray(np.einsum("ec,eci->ei", lack, self._slopes[elements]))
 
     def advance(self, correction: FloatArray) -> FloatArray:
         """The pressures of the linearised volume constraint, K M⁻¹ (∫ φ (J−1) dV + b·Δu).

@@ -96,7 +96,9 @@ def smallest_stiffness(
         newton.linearise_at(state)
         flexibility, size = _flexibility(newton)
         if under_conjugate and newton.load_term is not None:
-            slopes = newton.load_term.conjugate(state.unknowns)[1][newton.assembly.free[:size]]
+            gradient = newton.load_term.conjugate(state.unknowns)[1]
+            gradient = newton.assembly.reduced(gradient, state.unknowns)
+            slopes = gradient[newton.assembly.free[:size]]
             flexibility = _without_load(flexibility, slopes)
         found = _smallest(flexibility, size)
     except (ArpackError, SingularMatrixError):

@@ -91,6 +91,18 @@ class CondensingTerm(EnergyTerm, Protocol):
 
 
 @runtime_checkable
+class LaggingTerm(EnergyTerm, Protocol):
+    """A term whose residual has what its internal variables, iterated, lack of the state's."""
+
+    def lagging(self, internal: FloatArray, elements: IntArray) -> FloatArray:
+        """That part of the residual (k, size) of ``elements`` (k,) at the state linearised last.
+
+        The geometric part of the tangent is that of the internal variables, without it.
+        """
+        ...
+
+
+@runtime_checkable
 class StressedTerm(EnergyTerm, Protocol):
     """A term whose geometric stiffness may be that of stresses which are iterated."""
 

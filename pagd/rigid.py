@@ -1,0 +1,45 @@
+"""Rigid motions x ↦ R x + t, and how a part of a deformed body has moved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pagd.rotations import kabsch
+
+FloatArray = NDArray[np.float64]
+
+__all__ = ["RigidMotion"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class RigidMotion:
+    """A rotation (3, 3) and a displacement (3,) in mm."""
+
+    rotation: FloatArray
+    displacement: FloatArray
+
+    @classmethod
+    def of(cls, reference: FloatArray, moved: FloatArray) -> RigidMotion:
+        """The motion that carries points (k, 3) best onto where they are (k, 3)."""
+        rotation = kabsch(reference, moved, np.ones(len(reference)))
+        return cls(rotation, moved.mean(axis=0) - rotation @ reference.mean(axis=0))
+
+    @classmethod
+    def shift(cls, x: float) -> RigidMotion:
+        """The translation by x mm along the actuator."""
+        return cls(np.eye(3), np.array([x, 0.0, 0.0]))
+
+    def __call__(self, points: FloatArray) -> FloatArray:
+        """Where it carries points (…, 3)."""
+        return np.asarray(points @ self.rotation.T + self.displacement)
+
+    def __matmul__(self, first: RigidMotion) -> RigidMotion:
+        """The motion that does ``first`` and then this one."""
+        return RigidMotion(self.rotation @ first.rotation, self(first.displacement))
+
+    def inverse(self) -> RigidMotion:
+        """The motion back."""
+        return RigidMotion(self.rotation.T, -self.rotation.T @ self.displacement)
