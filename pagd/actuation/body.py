@@ -80,8 +80,8 @@ class Body:
         self.mesh, self.material = mesh, material
         self.nodes = len(mesh.points)
         self.copies = 2 if "symmetry" in mesh.surfaces else 1
-        self.element = _element(mesh, wanted.element)
-        self.solids = _solids(mesh, material, self.element)
+        self.element = element_of(mesh, wanted.element)
+        self.solids = solids_of(mesh, material, self.element)
         self.size = 3 * self.nodes
         self.size += sum(s.pressures for s in self.solids if isinstance(s, TaylorHoodSolid))
         self.pressure = _pressure(mesh, self.element)
@@ -119,6 +119,13 @@ class Body:
         return self.copies * float(sum(solid.weights.sum() for solid in self.solids))
 
 
+def facing_walls(mesh: Mesh) -> tuple[IntArray, IntArray]:
+    """Outer faces (k, 6) that look along the actuator, and those (m, 6) that look back."""
+    faces = mesh.surfaces.get("outer", np.zeros((0, 6), np.int64))
+    along = normals_of(mesh.points, faces)[:, 0]
+    return faces[along > _LOOKS_ALONG], faces[along < -_LOOKS_ALONG]
+
+
 def normals_of(points: FloatArray, faces: IntArray) -> FloatArray:
     """Unit normals (F, 3) of the flat corner triangles of faces, out of the solid."""
     corners = points[faces[:, :3]]
@@ -126,7 +133,7 @@ def normals_of(points: FloatArray, faces: IntArray) -> FloatArray:
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-def _element(mesh: Mesh, wanted: str) -> str:
+def element_of(mesh: Mesh, wanted: str) -> str:
     """The element that is wanted, or the best that the mesh is made for."""
     if wanted not in ELEMENTS:
         raise InputError(f"element is {wanted!r}, but must be one of {', '.join(ELEMENTS)}")
@@ -141,7 +148,7 @@ def _element(mesh: Mesh, wanted: str) -> str:
     return wanted
 
 
-def _solids(
+def solids_of(
     mesh: Mesh, material: Elastomer, element: str
 ) -> tuple[TaylorHoodSolid | ElementPressureSolid, ...]:
     """The elastomer, by the kinds of its elements."""
@@ -188,12 +195,8 @@ def _gravity(
 
 
 def _contact(mesh: Mesh, law: ContactLaw | None) -> FaceContact | None:
-    """Contact of the outer faces that look along the actuator with those that look back."""
-    if "outer" not in mesh.surfaces:
-        return None
-    faces = mesh.surfaces["outer"]
-    along = normals_of(mesh.points, faces)[:, 0]
-    slaves, masters = faces[along > _LOOKS_ALONG], faces[along < -_LOOKS_ALONG]
+    """Contact of facing walls, where there are any."""
+    slaves, masters = facing_walls(mesh)
     if len(slaves) == 0 or len(masters) == 0:
         return None
     return FaceContact(mesh.points, slaves, masters, law)

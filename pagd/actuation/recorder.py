@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.actuation.body import Body
+from pagd.actuation.model import Model
 from pagd.actuation.result import Progress, RecordedState, Stop
 from pagd.errors import Status
 from pagd.fem.assembly import State
@@ -58,7 +58,7 @@ class Recorder:
         The recorded states; why the analysis has to end, once it has.
     """
 
-    body: Body
+    body: Model
     stop: Stop | None = None
     progress: Progress | None = None
     force: Force | None = None

@@ -25,7 +25,7 @@ from pagd.mesh.tagging import name_surfaces
 from pagd.mesh.topology import BoolArray
 from pagd.mesh.types import FloatArray, IntArray, Mesh
 
-__all__ = ["chamber_row"]
+__all__ = ["chamber_row", "gap_plane"]
 
 # Planes nearer than this (mm) are one; a design's sizes are far larger or equal.
 _SAME = 1e-6
@@ -147,6 +147,18 @@ def _planes(design: Design, size: float) -> list[_Plane]:
             for share in shares
         ]
     return planes
+
+
+def gap_plane(design: Design, size: float) -> float:
+    """Distance (mm) behind a chamber of that plane of a row's mesh in the gap that halves it best.
+
+    Parameters
+    ----------
+    design, size
+        As of :func:`chamber_row`.
+    """
+    parts = max(_parts(design.t_n, size), _LEAST_BLOCKS["gap"])
+    return design.t_n * (parts // 2) / parts
 
 
 def _parts(length: float, size: float) -> int:

@@ -48,7 +48,8 @@ def quadratic_mesh(
 def sort_along_axis(mesh: Mesh) -> Mesh:
     """Return the mesh with nodes, elements and faces sorted along the longest axis.
 
-    Elements that come as blocks stay in order.
+    Each face begins with the lowest of its corners, so that rows of the same chambers have the same
+    faces. Elements that come as blocks stay in order.
     """
     axis = int(np.argmax(np.ptp(mesh.points, axis=0)))
     order = np.argsort(mesh.points[:, axis], kind="stable")
@@ -62,10 +63,16 @@ def sort_along_axis(mesh: Mesh) -> Mesh:
         points=mesh.points[order],
         tets=tets,
         surfaces={
-            name: rank[faces][np.argsort(rank[faces].min(axis=1), kind="stable")]
+            name: _from_lowest(rank[faces[np.argsort(rank[faces].min(axis=1), kind="stable")]])
             for name, faces in mesh.surfaces.items()
         },
     )
+
+
+def _from_lowest(faces: IntArray) -> IntArray:
+    """Faces (k, 6) turned until their lowest corner comes first."""
+    turn = (np.arange(3) + faces[:, :3].argmin(axis=1)[:, None]) % 3
+    return np.take_along_axis(faces, np.hstack([turn, 3 + turn]), axis=1)
 
 
 def compact(

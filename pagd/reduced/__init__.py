@@ -1,0 +1,1 @@
+"""The reduced-order tier: one chamber instead of a whole row."""
