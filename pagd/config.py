@@ -38,6 +38,7 @@ SECTIONS = {
     "mesh": ("mesh",),
     "solve": ("solve",),
     "metrics": ("metrics",),
+    "screening": ("channel", "limits", "mesh", "solve", "metrics"),
     "figures": ("figures",),
     "dataset": ("channel", "limits", "dataset"),
     "embedding": ("embedding",),

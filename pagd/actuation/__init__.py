@@ -8,7 +8,7 @@ pressures are recorded for every design, so that designs can be compared.
 from pagd.actuation.blocked import blocked_force
 from pagd.actuation.body import Body
 from pagd.actuation.free import free_actuation
-from pagd.actuation.result import ActuationResult, Progress, RecordedState, Stop
+from pagd.actuation.result import ActuationResult, Guide, Progress, RecordedState, Stop
 from pagd.actuation.settings import ELEMENTS, SUPPORTS, Actuation
 from pagd.actuation.threads import use_threads
 
@@ -18,6 +18,7 @@ __all__ = [
     "Actuation",
     "ActuationResult",
     "Body",
+    "Guide",
     "Progress",
     "RecordedState",
     "Stop",

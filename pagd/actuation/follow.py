@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.actuation.body import Body
 from pagd.actuation.limit_points import limit_points
+from pagd.actuation.model import Model
 from pagd.actuation.recorder import Recorder
-from pagd.actuation.result import ActuationResult, Figures
+from pagd.actuation.result import ActuationResult, Figures, Guide
 from pagd.actuation.settings import Actuation
 from pagd.errors import Status
 from pagd.fem.assembly import Assembly, State
 from pagd.fem.conjugate import ConjugatePath
 from pagd.fem.contact import FaceContact
-from pagd.fem.continuation import Continuation, LoadPath, Step, StepControl
+from pagd.fem.continuation import Begun, Continuation, LoadPath, Step, StepControl
+from pagd.fem.guided import GuidedPath
 from pagd.fem.linear_solver import LinearSolver, linear_solver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.plane_contact import PlaneContact
@@ -38,20 +39,33 @@ _GROWTH = 5.0
 # and a held one to a pressure that it does not reach.
 _RESOLUTION = 0.01
 
+# Pressures that differ by less than this share are the same.
+_SAME = 1e-9
+
 # Gravity is raised in so many steps at first, and by no less than so many of these.
 _GRAVITY_STEP, _SMALLEST_GRAVITY_STEP = 0.25, 1e-3
 
 
 @dataclass(frozen=True, slots=True)
 class _Followed:
-    """How a path ended; the pressure (kPa) from which on the volume was controlled."""
+    """How a path ended, and how it was followed.
+
+    guided_to: pressure (kPa) up to which first guesses led. volume_controlled_from: the one from
+    which on the volume was controlled.
+    """
 
     path: LoadPath
     volume_controlled_from: float | None = None
+    guided_to: float | None = None
 
 
 def follow(
-    body: Body, assembly: Assembly, actuation: Actuation, recorder: Recorder
+    body: Model,
+    assembly: Assembly,
+    actuation: Actuation,
+    recorder: Recorder,
+    wanted_correction: float = 1.0,
+    guide: Guide | None = None,
 ) -> ActuationResult:
     """Raise the pressure through the recorded ones, as far as it goes.
 
@@ -65,12 +79,16 @@ def follow(
         Pressures and tolerances.
     recorder
         Is called with every converged step, the unloaded one first.
+    wanted_correction
+        First correction of a node, in mm, that steps are chosen for; see :class:`StepControl`.
+    guide
+        First guesses, if there are any.
     """
     solver = linear_solver(actuation.linear_solver)
     touches = any(isinstance(term, FaceContact | PlaneContact) for term in assembly.terms)
     settings = NewtonSettings(tolerance=actuation.tolerance_mm, **(_PATIENT if touches else {}))
     newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure, recorder.force)
-    followed = _follow(body, newton, actuation, recorder)
+    followed = _follow(body, newton, actuation, recorder, wanted_correction, guide)
     # Where the path ends early, how far it came is a result too.
     recorder.record_last()
     solver.free()
@@ -82,7 +100,14 @@ def follow(
     return ActuationResult(status, reason, recorder.states, history, figures)
 
 
-def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder) -> _Followed:
+def _follow(
+    body: Model,
+    newton: Newton,
+    actuation: Actuation,
+    recorder: Recorder,
+    wanted_correction: float,
+    guide: Guide | None,
+) -> _Followed:
     start, failure = _at_rest(body, newton)
     recorder(Step(start, 0, True))
     if failure:
@@ -92,6 +117,7 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
     control = StepControl(
         first=actuation.first_step_kPa * _KPA,
         smallest=actuation.smallest_step_kPa * _KPA,
+        wanted_correction=wanted_correction,
         growth=_GROWTH,
         dense=True,
         # With the tip held, contact is hard to step into from afar.
@@ -100,18 +126,34 @@ def _follow(body: Body, newton: Newton, actuation: Actuation, recorder: Recorder
         resolution=_RESOLUTION if held else 0.0,
     )
     pressures = list(actuation.recorded_kPa() * _KPA)
+    begun, guided_to = Begun((start,)), None
+    if guide is not None and len(guide.pressure_kPa) and body.gravity is None:
+        begun = _guided(body, newton, guide, recorder, start)
+        guided_to = begun.path.load / _KPA
+        if begun.path.stopped:
+            return _Followed(begun.path, guided_to=guided_to)
+        pressures = [p for p in pressures if p > begun.path.load * (1 + _SAME)]
     continuation = Continuation(newton, control)
-    path = continuation.follow(pressures, recorder, start)
+    path = continuation.follow(pressures, recorder, begun=begun)
     if not path.failure or len(continuation.states) < 2 or not _may_go_on(path, recorder):
-        return _Followed(path)
+        return _Followed(path, guided_to=guided_to)
     left = [pressure for pressure in pressures if pressure > path.load]
     # Limit points are where steps have to be small.
     careful = replace(control, growth=StepControl().growth, retry_again=control.retry)
     volumes = ConjugatePath(newton, careful)
     further = volumes.follow(continuation.states, left, recorder, path)
     if further.steps == path.steps:
-        return _Followed(further)
-    return _Followed(further, path.load / _KPA)
+        return _Followed(further, guided_to=guided_to)
+    return _Followed(further, path.load / _KPA, guided_to)
+
+
+def _guided(body: Model, newton: Newton, guide: Guide, recorder: Recorder, start: State) -> Begun:
+    """How far the first guesses lead."""
+    guided = GuidedPath(newton, lambda load: guide.state(body, load / _KPA))
+    between = [float(pressure) * _KPA for pressure in guide.between_kPa]
+    loads = sorted([*(float(pressure) * _KPA for pressure in guide.pressure_kPa), *between])
+    path = guided.follow(loads, recorder, start, between)
+    return Begun(guided.states, path)
 
 
 def _may_go_on(path: LoadPath, recorder: Recorder) -> bool:
@@ -124,7 +166,7 @@ def _may_go_on(path: LoadPath, recorder: Recorder) -> bool:
     return recorder.force is None
 
 
-def _at_rest(body: Body, newton: Newton) -> tuple[State, tuple[Status, str] | None]:
+def _at_rest(body: Model, newton: Newton) -> tuple[State, tuple[Status, str] | None]:
     """The state without pressure, under gravity where there is any; why not all of gravity."""
     state = newton.assembly.at_rest()
     newton.assembly.look_around(state)
@@ -196,7 +238,7 @@ def _ending(
     return Status.not_converged, f"{beyond} {means} converged ({path.failure})."
 
 
-def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: LinearSolver) -> Figures:
+def _figures(body: Model, assembly: Assembly, followed: _Followed, solver: LinearSolver) -> Figures:
     path = followed.path
     figures: Figures = {
         "tets": len(body.mesh.tets),
@@ -216,6 +258,8 @@ def _figures(body: Body, assembly: Assembly, followed: _Followed, solver: Linear
         figures["factor_nonzeros"] = solver.factor_nonzeros
     if path.critical is not None:
         figures["critical_pressure_kPa"] = path.critical.load / _KPA
+    if followed.guided_to is not None:
+        figures["guided_to_kPa"] = followed.guided_to
     if followed.volume_controlled_from is not None:
         figures["volume_controlled_from_kPa"] = followed.volume_controlled_from
     return figures
@@ -235,7 +279,7 @@ def _limits(history: dict[str, FloatArray]) -> Figures:
     }
 
 
-def _gaps(body: Body, history: dict[str, FloatArray]) -> Figures:
+def _gaps(body: Model, history: dict[str, FloatArray]) -> Figures:
     """What the history says of gaps, where there is contact."""
     if body.contact is None:
         return {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pagd.actuation.body import Body
 from pagd.actuation.follow import follow
 from pagd.actuation.recorder import Recorder
-from pagd.actuation.result import ActuationResult, Progress, Stop
+from pagd.actuation.result import ActuationResult, Guide, Progress, Stop
 from pagd.actuation.settings import Actuation
 from pagd.materials import Elastomer, Sheet
 from pagd.mesh.types import Mesh
@@ -18,6 +18,7 @@ def free_actuation(
     actuation: Actuation | None = None,
     stop: Stop | None = None,
     progress: Progress | None = None,
+    guide: Guide | None = None,
 ) -> ActuationResult:
     """Raise the pressure from zero, as far as the actuator goes.
 
@@ -35,6 +36,9 @@ def free_actuation(
         a status and a reason end the analysis.
     progress
         Called with the pressure in kPa and the iterations of each converged step.
+    guide
+        First guesses at the recorded pressures; where they lead no further, and without any, the
+        path is followed step by step. Not used under gravity.
 
     Returns
     -------
@@ -48,4 +52,4 @@ def free_actuation(
     """
     wanted = actuation or Actuation()
     body = mesh if isinstance(mesh, Body) else Body(mesh, material, paper, wanted)
-    return follow(body, body.assembly(), wanted, Recorder(body, stop, progress))
+    return follow(body, body.assembly(), wanted, Recorder(body, stop, progress), guide=guide)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pagd.actuation.model import Model
 from pagd.errors import Status
+from pagd.fem.assembly import State
 
 FloatArray = NDArray[np.float64]
 
@@ -21,6 +24,24 @@ Figures = dict[str, float | int | str | dict[str, float]]
 
 #: Is told the pressure in kPa and the iterations of every converged step.
 Progress = Callable[[float, int], None]
+
+
+class Guide(Protocol):
+    """First guesses of the free actuation that come from a cheaper model."""
+
+    @property
+    def pressure_kPa(self) -> FloatArray:
+        """Rising pressures (k,) that there are guesses for, the first recorded ones."""
+        ...
+
+    @property
+    def between_kPa(self) -> FloatArray:
+        """Pressures (m,) between these at which steps are wanted for the sake of the history."""
+        ...
+
+    def state(self, body: Model, pressure_kPa: float) -> State:
+        """The guess at a pressure."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +84,8 @@ class ActuationResult:
         ``profile_s``, processor time by part; ``pressure_kPa`` reached; ``solid_volume_mm3`` of the
         whole actuator; ``linear_solver``;
         ``largest_pressure_kPa`` and ``limit_points``, its maxima along the path, and
-        ``volume_controlled_from_kPa`` where pressure control failed, ``critical_pressure_kPa``
+        ``volume_controlled_from_kPa`` where pressure control failed, ``guided_to_kPa`` where first
+        guesses came from a cheaper model, ``critical_pressure_kPa``
         where stability is foretold to be lost; where walls face each
         other and contact is on ``initial_gap_mm`` of the undeformed body,
         ``deepest_penetration_mm`` (of all steps), ``penetration_share`` of the initial gap and,

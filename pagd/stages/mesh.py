@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from pagd.design import Channel
-from pagd.errors import InputError, StageFailure
+from pagd.errors import InputError, StageFailure, Status
 from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
@@ -76,20 +76,29 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
         out,
         work,
         design_id=drawn.design_id,
-        configuration={"mesh": config["mesh"]},
+        configuration={"mesh": config["mesh"]} | _row(geometry, drawn),
         upstream=[drawn, repaired],
         libraries=_LIBRARIES,
     )
 
 
+def _row(geometry: Path, drawn: Record) -> dict[str, Any]:
+    """What row of chambers is meshed, for stages that know its parts; nothing if it failed."""
+    if drawn.status is not Status.ok:
+        return {}
+    design = read_design(geometry).design.as_dict()
+    return {"design": design, "channel": drawn.configuration["channel"]}
+
+
 def _structured(geometry: Path, size: float, half: bool) -> Mesh:
     """The row of chambers that the stage geometry has drawn, in blocks."""
-    design = read_design(geometry).design
-    channel = {
-        key.removesuffix("_mm"): value
-        for key, value in read_record(geometry).configuration["channel"].items()
-    }
-    return chamber_row(design, Channel(**channel), size, half=half)
+    channel = channel_of(read_record(geometry).configuration["channel"])
+    return chamber_row(read_design(geometry).design, channel, size, half=half)
+
+
+def channel_of(lengths: Mapping[str, float]) -> Channel:
+    """Return the air channel of the configuration's ``channel``."""
+    return Channel(**{key.removesuffix("_mm"): value for key, value in lengths.items()})
 
 
 def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:

@@ -14,19 +14,24 @@ from pagd.actuation import (
     ActuationResult,
     Body,
     Progress,
+    Stop,
     blocked_force,
     free_actuation,
 )
 from pagd.config import material_file
+from pagd.design import Design
 from pagd.documents import read_document
 from pagd.errors import InputError
 from pagd.materials import Elastomer, Sheet, Use, elastomer, find_material, sheet
+from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import work_of_pressure
 from pagd.record import Meter, Record, read_record
+from pagd.reduced.guide import RowGuide
+from pagd.reduced.row import unlike_their_neighbours
 from pagd.self_collision import self_collision_stop
-from pagd.stages.mesh import identity, mesh_file, name_of
+from pagd.stages.mesh import channel_of, identity, mesh_file, name_of
 from pagd.stages.stage import Outcome, run_stage
 from pagd.stages.stops import bending_stop, first_of
 from pagd.states import States, write_states
@@ -41,6 +46,9 @@ __all__ = [
     "materials_of",
     "run",
 ]
+
+# Where more of the chambers are unlike their neighbours, the parts cost as much as the whole.
+_LARGEST_SHARE = 0.5
 
 STATES_NAME = "states.parquet"
 HISTORY_NAME = "history.parquet"
@@ -117,6 +125,7 @@ def run(
     file = mesh_file(mesh)
     settings = dict(config["solve"])
     limit = settings.pop("bending_limit_deg")
+    from_cells = settings.pop("first_guess") == "cells"
     actuation = Actuation(**settings | {"gravity_m_s2": tuple(settings["gravity_m_s2"])})
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
@@ -125,9 +134,11 @@ def run(
             body = Body(read, materials.elastomer, materials.paper, actuation)
             collision = self_collision_stop(read)
         both = materials.elastomer, materials.paper, actuation
+        stop = first_of(bending_stop(read, limit), collision)
+        with meter.part("cells"):
+            guide = _guide(upstream, read, both, stop, outcome) if from_cells else None
         with meter.part("solve"):
-            stop = first_of(bending_stop(read, limit), collision)
-            result = free_actuation(body, *both, stop, progress)
+            result = free_actuation(body, *both, stop, progress, guide)
         outcome.figures |= _figures(result) | identity(read)
         outcome.end(result.status, result.reason)
         if actuation.blocked_force != "none":
@@ -152,6 +163,35 @@ def run(
         upstream=upstream,
         libraries=("numba", "numpy", "pypardiso", "scipy"),
     )
+
+
+def _guide(
+    upstream: Sequence[Record],
+    mesh: Mesh,
+    both: tuple[Elastomer, Sheet, Actuation],
+    stop: Stop,
+    outcome: Outcome,
+) -> RowGuide | None:
+    """First guesses by the parts of the row that the mesh is of; none if it is of no row."""
+    made = next((record.configuration for record in upstream), {})
+    in_blocks = any(record.figures.get("mesher") == STRUCTURED for record in upstream)
+    if not in_blocks or "design" not in made or any(both[2].gravity_m_s2):
+        return None
+    if both[2].element in ("taylor_hood", "element_pressure"):
+        return None
+    design, channel = Design.from_mapping(made["design"]), channel_of(made["channel"])
+    alone = sum(last - first + 1 for first, last in unlike_their_neighbours(design))
+    if alone > _LARGEST_SHARE * design.N:
+        return None
+    guide = RowGuide(design, channel, mesh, made["mesh"]["block_mm"], *both, stop)
+    reduced = guide.reduced
+    outcome.figures["cells"] = {
+        "status": reduced.status.value,
+        "reason": reduced.reason,
+        "pressure_kPa": float(reduced.pressure_kPa[-1]),
+        "factorisations": reduced.factorisations,
+    }
+    return guide
 
 
 def _entry(use: Use, named: str, file: Path) -> tuple[str, dict[str, Any]]:

@@ -1,0 +1,233 @@
+"""Tests of the reduced-order tier: cells, pieces, rows, blocked force, first guesses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fem_checks import PAPER
+from reduced_samples import (
+    ACTUATION,
+    CHANNEL,
+    ELASTOMER,
+    MIXED,
+    SIZE,
+    SLANTED,
+    STRAIGHT,
+    cell,
+    solved,
+)
+
+from pagd.actuation import Actuation, Body, blocked_force, free_actuation
+from pagd.design import Design
+from pagd.errors import InputError, Status
+from pagd.fem.guided import GuidedPath
+from pagd.fem.linear_solver import linear_solver
+from pagd.fem.newton import Newton, NewtonSettings
+from pagd.mesh.chamber_row import chamber_row
+from pagd.mesh.pieces import piece_between
+from pagd.mesh.types import Mesh
+from pagd.metrics import Trajectory, measure
+from pagd.reduced.blocked import blocked_forces
+from pagd.reduced.cell_mesh import cell_mesh, cuts_of
+from pagd.reduced.compliance import Compliance
+from pagd.reduced.rod import Rod, held_force
+from pagd.reduced.row import Row, unlike_their_neighbours
+from pagd.reduced.solve import ReducedRow
+from pagd.reduced.transfer import guess
+from pagd.rigid import RigidMotion
+from pagd.sections import place_sections, stations_of
+
+
+def mesh_of(design: Design) -> Mesh:
+    return chamber_row(design, CHANNEL, SIZE, half=design.is_straight)
+
+
+def measured(design: Design, mesh: Mesh, pressure: np.ndarray, moved: np.ndarray) -> Trajectory:
+    mirrored = "symmetry" in mesh.surfaces
+    sections = place_sections(
+        mesh.points, mesh.surfaces["paper"], stations_of(design), mirrored=mirrored
+    )
+    return measure(sections, pressure, moved)
+
+
+def trajectory(reduced: ReducedRow, mesh: Mesh) -> Trajectory:
+    row = reduced.row(mesh.points, CHANNEL)
+    moved = np.stack([reduced.displacement(row, float(p)) for p in reduced.pressure_kPa])
+    return measured(reduced.design, mesh, reduced.pressure_kPa, moved)
+
+
+def test_cells_have_the_volumes_of_their_share_of_a_row() -> None:
+    for design, half in ((STRAIGHT, True), (STRAIGHT, False), (SLANTED, False)):
+        model = cell(design, half=half)
+        # Chamber and channel: the cavity between the walls, the channel through walls and gap.
+        wall = float(design.end_wall_lengths()[0])
+        inside = (design.L - 2 * wall) * (design.W - 2 * design.t) * (design.H - design.t_h)
+        channel = (2 * wall + design.t_n) * CHANNEL.width * CHANNEL.height
+        assert model.volume(np.zeros(model.size)) == pytest.approx(inside + channel, rel=1e-9)
+
+
+def test_half_cells_and_whole_ones_agree() -> None:
+    """But for the blocks of the channel, of which a whole cell has half as many across."""
+    half, whole = solved(STRAIGHT, pieces=False), solved(MIXED, pieces=True)
+    screw, other = (row.cells[False].path.at(20.0).screw for row in (half, whole))
+    np.testing.assert_allclose(screw.rotation, other.rotation, atol=1e-3)
+    np.testing.assert_allclose(screw.displacement, other.displacement, atol=1e-2)
+
+
+def test_unfolded_shapes_are_those_of_a_whole_cell() -> None:
+    unfolded = solved(MIXED, pieces=False).cells[False]
+    whole = solved(MIXED, pieces=True).cells[False]
+    assert len(unfolded.model.mesh.points) < len(whole.model.mesh.points)
+    points = whole.mesh.mesh.points
+    moved = [points + cell.path.at(20.0).displacement for cell in (unfolded, whole)]
+    # Other nodes are held against rigid motions.
+    back = RigidMotion.of(moved[1], moved[0])
+    # The blocks of the channel differ.
+    np.testing.assert_allclose(back(moved[1]), moved[0], atol=0.03)
+
+
+def test_neighbours_that_differ_are_found() -> None:
+    assert unlike_their_neighbours(STRAIGHT) == [(0, 0), (4, 4)]
+    assert unlike_their_neighbours(MIXED) == [(0, 0), (3, 4), (7, 7)]
+    assert unlike_their_neighbours(replace(MIXED, alpha=0.125)) == [(0, 1), (7, 7)]
+    assert unlike_their_neighbours(replace(MIXED, N=3, alpha=0.34)) == [(0, 2)]
+
+
+@pytest.mark.parametrize("design", [STRAIGHT, SLANTED, MIXED], ids=["straight", "slanted", "mixed"])
+def test_at_rest_a_row_of_parts_is_the_row(design: Design) -> None:
+    mesh = mesh_of(design)
+    for pieces in (False, True):
+        reduced = solved(design, pieces=pieces)
+        row = reduced.row(mesh.points, CHANNEL)
+        np.testing.assert_allclose(reduced.displacement(row, 0.0), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("design", "alone", "with_pieces"),
+    [(STRAIGHT, 0.2, 0.004), (SLANTED, 0.06, 0.004), (MIXED, 0.06, 0.004)],
+    ids=["straight", "slanted", "mixed"],
+)
+def test_rows_of_parts_are_near_the_whole(design: Design, alone: float, with_pieces: float) -> None:
+    """The tip, by its displacement: pieces see what cells alone do not, the ends."""
+    mesh = mesh_of(design)
+    whole = free_actuation(mesh, ELASTOMER, PAPER, ACTUATION)
+    assert whole.status is Status.ok
+    moved = np.stack([state.displacement for state in whole.states])
+    pressures = np.array([state.pressure_kPa for state in whole.states])
+    wanted = measured(design, mesh, pressures, moved)
+    for pieces, largest in ((False, alone), (True, with_pieces)):
+        reduced = solved(design, pieces=pieces)
+        assert reduced.status is Status.ok
+        np.testing.assert_allclose(reduced.pressure_kPa, pressures)
+        found = trajectory(reduced, mesh)
+        travel = np.linalg.norm(wanted.positions[-1, -1] - wanted.positions[0, -1])
+        error = np.linalg.norm(found.positions[-1, -1] - wanted.positions[-1, -1]) / travel
+        assert error < largest
+
+
+def test_volume_and_energy_of_pieces_and_cells_are_those_of_the_whole() -> None:
+    reduced = solved(SLANTED, pieces=True)
+    whole = free_actuation(mesh_of(SLANTED), ELASTOMER, PAPER, ACTUATION)
+    cells = SLANTED.N - 2
+    result = reduced.cells[True].result
+    recorded = result.history["recorded"]
+    for name, of_piece in (("cavity_volume_mm3", "volumes"), ("stored_energy_mJ", "energies")):
+        parts = cells * result.history[name][recorded]
+        parts = parts + sum(getattr(piece.followed, of_piece) for piece in reduced.pieces)
+        wanted = whole.history[name][whole.history["recorded"]]
+        np.testing.assert_allclose(parts, wanted, rtol=3e-3, atol=1e-6)
+
+
+def test_a_first_guess_from_parts_leads_to_the_same_states() -> None:
+    mesh = mesh_of(SLANTED)
+    whole = free_actuation(mesh, ELASTOMER, PAPER, ACTUATION)
+    reduced = solved(SLANTED, pieces=True)
+    row = reduced.row(mesh.points, CHANNEL)
+    body = Body(mesh, ELASTOMER, PAPER, ACTUATION)
+    assembly, solver = body.assembly(), linear_solver()
+    newton = Newton(assembly, solver, 3 * body.nodes, NewtonSettings(), body.pressure)
+    start = assembly.at_rest()
+    assembly.look_around(start)
+    path = GuidedPath(newton, lambda load: guess(body, reduced, row, 1e3 * load))
+    found: list[np.ndarray] = []
+    loads = [1e-3 * pressure for pressure in reduced.pressure_kPa[1:]]
+
+    def observe(step: object) -> None:
+        found.append(body.displacement(step.state.unknowns))  # type: ignore[attr-defined]
+
+    ended = path.follow(loads, observe, start)
+    assert not ended.failure
+    assert len(found) == len(loads)
+    factorisations = whole.figures["factorisations"]
+    assert isinstance(factorisations, int)
+    assert solver.factorisations <= factorisations / 2
+    for displacement, state in zip(found, whole.states[1:], strict=True):
+        np.testing.assert_allclose(displacement, state.displacement, atol=0.02)
+
+
+@pytest.mark.parametrize("design", [STRAIGHT, SLANTED], ids=["straight", "slanted"])
+def test_blocked_force_is_near_that_of_the_whole(design: Design) -> None:
+    held = blocked_force(mesh_of(design), ELASTOMER, PAPER, ACTUATION)
+    wanted = held.history["blocked_force_N"][held.history["recorded"]]
+    found = blocked_forces(solved(design, pieces=False), CHANNEL)
+    assert len(found) == len(wanted)
+    np.testing.assert_allclose(found[1:], wanted[1:], rtol=0.2)
+
+
+def test_a_rod_of_many_joints_is_a_beam() -> None:
+    """A beam of curvature κ whose tip is held at its height: F = 3 EI κ/2L, for small angles."""
+    joints, length, curvature, compliance = 200, 100.0, 1e-5, 0.02
+    pitch = length / joints
+    turn = RigidMotion.shift(0.0)
+    angle = curvature * pitch
+    rotation = np.array(
+        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    )
+    answer = np.vstack([compliance / joints * np.eye(3), np.zeros((3, 3))])
+    rod = Rod(
+        base=turn,
+        rotations=np.tile(rotation, (joints, 1, 1)),
+        displacements=np.tile([pitch, 0.0, 0.0], (joints, 1)),
+        centres=np.tile([pitch, 0.0, 0.0], (joints, 1)),
+        compliances=[Compliance(answer, answer, np.zeros(3))] * joints,
+        edge=np.zeros((2, 3)),
+        height=0.0,
+        is_planar=True,
+    )
+    found = held_force(rod)
+    assert found is not None
+    stiffness = length / compliance
+    assert found[0] == pytest.approx(1.5 * stiffness * curvature / length, rel=0.02)
+
+
+def test_a_cell_that_a_design_does_not_have_is_refused() -> None:
+    with pytest.raises(InputError, match="A design without slanted chambers has no slanted cell"):
+        cell_mesh(STRAIGHT, CHANNEL, SIZE, helical=True)
+
+
+def test_gravity_is_refused() -> None:
+    with pytest.raises(InputError, match="Under gravity the cells of a row are not alike"):
+        cell(STRAIGHT, actuation=Actuation(gravity_m_s2=(0.0, 0.0, -9.81)))
+
+
+def test_nodes_that_are_no_cells_are_refused() -> None:
+    reduced = solved(STRAIGHT, pieces=False)
+    mesh = mesh_of(STRAIGHT)
+    middle = np.abs(mesh.points[:, 0] - mesh.points[:, 0].mean()) < 5
+    points = mesh.points + 0.3 * middle[:, None]
+    with pytest.raises(InputError, match="not those of its cells"):
+        Row(STRAIGHT, {False: reduced.cells[False].mesh}, points, CHANNEL.gap_floor)
+
+
+def test_pieces_of_a_mesh_are_cut_at_its_planes() -> None:
+    mesh = mesh_of(STRAIGHT)
+    front, back = cuts_of(STRAIGHT, SIZE)
+    piece = piece_between(mesh, 10 + front, 10 + back)
+    assert piece.mesh.points[:, 0].min() == pytest.approx(10 + front)
+    assert piece.mesh.points[:, 0].max() == pytest.approx(10 + back)
+    np.testing.assert_array_equal(piece.mesh.points, mesh.points[piece.numbers])
+    assert {"cavity", "paper", "outer", "symmetry"} == set(piece.mesh.surfaces)
+    with pytest.raises(InputError, match=r"no planes at x = 9\.5 and 21 mm"):
+        piece_between(mesh, 9.5, 21.0)
