@@ -12,6 +12,7 @@ __all__ = [
     "add_command",
     "add_config",
     "add_folder",
+    "add_materials",
     "add_out",
     "add_stage_options",
     "add_verbose",
@@ -50,6 +51,28 @@ def override(group: Any, section: str, key: str, kind: type, text: str) -> None:
     """Add an option that stands for a key of the configuration."""
     option = f"--{key.replace('_', '-')}"
     group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar="VALUE", help=text)
+
+
+def add_materials(command: argparse.ArgumentParser) -> Any:
+    """Add materials and pressure; return the group for more."""
+    group = command.add_argument_group("analysis (instead of the configuration's values)")
+    for use, what in (("material", "elastomer"), ("paper", "sheet in the base")):
+        group.add_argument(
+            f"--{use}",
+            metavar="NAME",
+            help=f"{what}: a name in the file of materials, or a JSON entry with a name",
+        )
+    group.add_argument(
+        "--material-file", metavar="FILE", help="file of materials (default: pagd's own)"
+    )
+    group.add_argument(
+        "--pressure-kPa",
+        dest="solve.maximum_pressure_kPa",
+        type=float,
+        metavar="P",
+        help="pressure at the end",
+    )
+    return group
 
 
 def add_stage_options(command: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from pagd.cli.options import checked_threads, config_of
 
-__all__ = ["dataset", "diversity", "embed", "generate", "select"]
+__all__ = ["dataset", "diversity", "embed", "generate", "screen", "select"]
 
 
 def dataset(options: Namespace) -> int:
@@ -95,6 +95,31 @@ def diversity(options: Namespace) -> int:
         print(f"{name}: novelty {novelty:.3f}{hull}")
     for name, reason in found["left_out"].items():
         print(f"{name}: left out ({reason})")
+    return 0
+
+
+def screen(options: Namespace) -> int:
+    """Run the stage screening."""
+    checked_threads(options.processes, "--processes")
+    from pagd.catalogue import read_designs
+    from pagd.stages import screening as stage
+    from pagd.stages.solve import materials_of
+
+    config = config_of(options)
+    designs = list(read_designs({options.designs.stem: str(options.designs)}).values())
+    record = stage.run(
+        designs,
+        options.out,
+        config,
+        materials_of(config, options.material, options.paper),
+        pieces=options.pieces,
+        processes=options.processes,
+    )
+    found = record.figures
+    print(
+        f"{found['designs']} designs ({_listed(found['statuses'])}) in {options.out}, "
+        f"{found['cpu_s_median']:.2f} core-s each in the median."
+    )
     return 0
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 from pagd.cli.arguments import (
     add_command,
     add_config,
     add_folder,
+    add_materials,
     add_out,
     add_verbose,
     override,
@@ -25,6 +27,7 @@ def add_generative(commands: Any) -> None:
     _add_generate(commands)
     _add_diversity(commands)
     _add_select(commands)
+    _add_screen(commands)
 
 
 def _add_dataset(commands: Any) -> None:
@@ -99,6 +102,29 @@ def _add_select(commands: Any) -> None:
         "-n", "--designs", dest="selection.designs", type=int, metavar="VALUE", help="how many"
     )
     override(group, "selection", "seed", int, "seed of the first choice")
+    _add_set_options(command)
+
+
+def _add_screen(commands: Any) -> None:
+    command = add_command(
+        commands, "screen", "generative:screen", "many designs by one cell each: performance"
+    )
+    command.add_argument(
+        "designs", type=Path, help="table of designs: CSV, or Parquet as pagd writes it"
+    )
+    command.add_argument(
+        "--pieces",
+        action="store_true",
+        help="solve the ends too, and where chambers change: tips within 0.2 %% of the full model",
+    )
+    command.add_argument(
+        "--processes",
+        type=int,
+        default=1,
+        metavar="N",
+        help="designs at once, with one thread each (default: 1)",
+    )
+    add_materials(command)
     _add_set_options(command)
 
 

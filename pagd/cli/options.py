@@ -25,8 +25,8 @@ def config_of(options: Namespace) -> dict[str, Any]:
     return configuration.checked(config, "command line")
 
 
-def checked_threads(count: int) -> int:
-    """Return a number of threads; ``InputError`` if it is none."""
+def checked_threads(count: int, option: str = "--threads") -> int:
+    """Return a number of threads or processes; ``InputError`` if it is none."""
     if count < 1:
-        raise InputError(f"--threads = {count} must be at least 1.")
+        raise InputError(f"{option} = {count} must be at least 1.")
     return count

@@ -12,6 +12,7 @@ from pagd.cli.arguments import (
     add_command,
     add_config,
     add_folder,
+    add_materials,
     add_stage_options,
     add_verbose,
     override,
@@ -140,35 +141,13 @@ def _add_solve(commands: Any) -> None:
 
 
 def _add_solve_options(command: argparse.ArgumentParser) -> None:
-    group = _add_analysis(command)
+    group = add_materials(command)
     override(group, "solve", "element", str, "taylor_hood or element_pressure")
     override(group, "solve", "blocked_force", str, "what holds the tip: edge, plate or none")
     group.add_argument(
         "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
     )
     group.add_argument("--vtu", action="store_true", help="also write the states for ParaView")
-
-
-def _add_analysis(command: argparse.ArgumentParser) -> Any:
-    """Add materials and pressure; return the group for more."""
-    group = command.add_argument_group("analysis (instead of the configuration's values)")
-    for use, what in (("material", "elastomer"), ("paper", "sheet in the base")):
-        group.add_argument(
-            f"--{use}",
-            metavar="NAME",
-            help=f"{what}: a name in the file of materials, or a JSON entry with a name",
-        )
-    group.add_argument(
-        "--material-file", metavar="FILE", help="file of materials (default: pagd's own)"
-    )
-    group.add_argument(
-        "--pressure-kPa",
-        dest="solve.maximum_pressure_kPa",
-        type=float,
-        metavar="P",
-        help="pressure at the end",
-    )
-    return group
 
 
 def _add_deck(commands: Any) -> None:
@@ -180,7 +159,7 @@ def _add_deck(commands: Any) -> None:
         help="folder of the stage mesh, or a .msh file with surfaces fixed, cavity, paper, …",
     )
     deck.add_argument("--out", type=Path, required=True, metavar="FILE", help="deck to write")
-    _add_analysis(deck)
+    add_materials(deck)
     form = deck.add_argument_group("form of the deck")
     for option, default, text in (
         ("solid-element", "C3D10", "tetrahedron: C3D10, or C3D10H and C3D10HS for Abaqus"),

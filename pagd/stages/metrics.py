@@ -218,7 +218,8 @@ def _write(
         PERFORMANCE_NAME: (MEASURES, measures),
     }
     for name, (columns, data) in tables.items():
-        named = {"design_id": [design_id] * len(data["pressure_kPa"])}
+        rows = len(data["pressure_kPa"])
+        named = {"design_id": [design_id] * rows, "fidelity": ["full"] * rows}
         write_table(out / name, columns, named | data)
 
 

@@ -15,6 +15,7 @@ TRAJECTORY = (
     Column("z_mm", "double", "mm", "position of the section upwards"),
     Column("bending_deg", "double", "deg", "rotation of the section about the width axis"),
     Column("twist_deg", "double", "deg", "rotation of the section about the deformed axis"),
+    Column("fidelity", "string", "", "full, pieces or cells: how much of the actuator was solved"),
 )
 
 CHAMBERS = (
@@ -24,6 +25,7 @@ CHAMBERS = (
     Column("kind", "string", "", "helical or straight; null: a mesh without a design, cut evenly"),
     Column("bending_deg", "double", "deg", "bending of that chamber alone; the sum is the tip's"),
     Column("twist_deg", "double", "deg", "twist of that chamber alone; the sum is the tip's"),
+    Column("fidelity", "string", "", "full, pieces or cells: how much of the actuator was solved"),
 )
 
 MEASURES = (
@@ -53,6 +55,7 @@ MEASURES = (
     Column("strain_rate_per_s", "double", "1/s", "the same by time; null: no ramp configured"),
     Column("blocked_force_N", "double", "N", "force of the held tip on its support; null: none"),
     Column("smallest_gap_mm", "double", "mm", "gap between chambers; negative: penetration"),
+    Column("fidelity", "string", "", "full, pieces or cells: how much of the actuator was solved"),
 )
 
 PERFORMANCE = (
@@ -63,7 +66,7 @@ PERFORMANCE = (
     Column("measured_mode", "string", "", "bending, twisting, mixed or none, as measured"),
     Column("status", "string", "", "how the design ended"),
     Column("reason", "string", "", "why, where the status is not ok"),
-    Column("fidelity", "string", "", "full: finite elements of the whole actuator"),
+    Column("fidelity", "string", "", "full, pieces or cells: how much of the actuator was solved"),
     Column("pressure_kPa", "double", "kPa", "pressure reached; the figures below are for it"),
     Column(
         "largest_pressure_kPa", "double", "kPa", "largest along the path; it may have fallen since"

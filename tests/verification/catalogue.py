@@ -11,6 +11,7 @@ from cases_calculix import (
     same_element,
     twisting_on_finer_meshes,
 )
+from cases_cells import closed_tubes, rows_of_parts
 from cases_composite import bent_strip, twisted_strip
 from cases_contact import narrow_row, two_blocks
 from cases_contact_rows import (
@@ -65,6 +66,8 @@ CASES: tuple[Case, ...] = (
     Case(rows=balance_of_forces, group=Group.supports),
     Case(rows=plate_and_edge, group=Group.supports),
     Case(rows=symmetries, group=Group.symmetry),
+    Case(rows=closed_tubes, group=Group.cells),
+    Case(rows=rows_of_parts, group=Group.cells, costly=True),
     Case(rows=other_library, group=Group.programs),
     Case(rows=element_table, group=Group.programs, costly=True),
     Case(rows=laws_in_a_deck, group=Group.programs, program="ccx"),

@@ -75,6 +75,37 @@ def cylinder_pressure(material: Coefficients, inner: float, outer: float, stretc
     return float(quad(lambda s: slope(s) / (s**2 - 1), outer_stretch, stretch)[0])
 
 
+def closed_tube(
+    material: Coefficients, inner: float, outer: float, stretch: float
+) -> tuple[float, float]:
+    """Pressure (MPa) and axial stretch λz of a thick tube with closed ends, inner stretch λa.
+
+    p = ∫ W_λ/(λ²λz − 1) dλ from λb to λa, with λb²λz − 1 = (A/B)² (λa²λz − 1), and no axial force
+    beyond that of the pressure on the ends: ∫ (2λz W_z − λ W_λ) λ/(λ²λz − 1)² dλ = 0
+    (Haughton and Ogden, *J. Mech. Phys. Solids* 27 (1979) 489).
+    """
+    c10, c20 = material
+
+    def slopes(hoop: float, axial: float) -> tuple[float, float]:
+        first = hoop**2 + axial**2 + (hoop * axial) ** -2
+        factor = c10 + 2 * c20 * (first - 3)
+        by_hoop = 2 * hoop - 2 * hoop**-3 * axial**-2
+        by_axial = 2 * axial - 2 * hoop**-2 * axial**-3
+        return factor * by_hoop, factor * by_axial
+
+    def between(axial: float, integrand: Callable[[float, float], float]) -> float:
+        outside = ((1 + (inner / outer) ** 2 * (stretch**2 * axial - 1)) / axial) ** 0.5
+        return float(quad(lambda s: integrand(s, axial), outside, stretch)[0])
+
+    def force(hoop: float, axial: float) -> float:
+        by_hoop, by_axial = slopes(hoop, axial)
+        return (2 * axial * by_axial - hoop * by_hoop) * hoop / (hoop**2 * axial - 1) ** 2
+
+    found = brentq(lambda axial: between(axial, force), 0.9, 1.2, xtol=1e-12)
+    pressure = between(found, lambda s, axial: slopes(s, axial)[0] / (s**2 * axial - 1))
+    return pressure, float(found)
+
+
 def cylinder_mean_stress(
     material: Coefficients, inner: float, outer: float, stretch: float, radius: float
 ) -> float:

@@ -72,6 +72,7 @@ class Group(StrEnum):
     contact = "Contact"
     supports = "Supports and gravity"
     symmetry = "Symmetries"
+    cells = "Cells of rows"
     programs = "Other programs"
     meshes = "Mesh convergence of the examples"
 

@@ -1,0 +1,1 @@
+"""Parts of the command behind docs/reduced-order.md."""

@@ -1,0 +1,180 @@
+"""Tables of how far the reduced-order analysis is from the full one."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+from performance.page import table, wrapped
+from scipy.stats import spearmanr
+
+from pagd.stages.reduced import CELLS, PIECES
+from reduction.pairs import Pair
+
+__all__ = ["text_of"]
+
+_WORDS = {CELLS: "cells alone", PIECES: "cells and pieces"}
+_FORCES = "blocked_force_N"
+
+
+def text_of(pairs: Sequence[Pair], wanted: int) -> str:
+    """The section: all designs, by mode, by pressure, by number of chambers, statuses, worst."""
+    parts = [
+        wrapped(
+            f"{len({pair.name for pair in pairs})} of {wanted} random designs that were solved in "
+            "full; errors are those of the last recorded pressure that both reached, unless it is "
+            "told. The error of a tip is its distance from that of the full model by the latter's "
+            "displacement."
+        ),
+        _all(pairs),
+        "By mode, last pressure, median and 90th percentile of the tip's error:",
+        _groups(pairs, lambda pair: pair.mode),
+        "By number of chambers:",
+        _groups(pairs, _chambers),
+        "By pressure:",
+        _by_pressure(pairs),
+        "How designs end, in full and reduced:",
+        _statuses(pairs),
+        "The ten tips that are farthest off, cells and pieces:",
+        _worst([pair for pair in pairs if pair.fidelity == PIECES]),
+    ]
+    return "\n\n".join(parts)
+
+
+def _all(pairs: Sequence[Pair]) -> str:
+    rows = []
+    for fidelity, words in _WORDS.items():
+        some = [pair for pair in pairs if pair.fidelity == fidelity]
+        last = _last(some)
+        seconds = np.array([pair.cpu_s for pair in some])
+        rows.append(
+            [
+                words,
+                _both(last["tip_error"], percent=True),
+                _both(_off(last, "bending_deg"), percent=False),
+                _both(_off(last, "twist_deg"), percent=False),
+                _rank(last, "bending_deg"),
+                _rank(last[last["mode"] != "bending"], "twist_deg"),
+                _both(_force_errors(last), percent=True),
+                f"{np.median(seconds):.2f} / {np.percentile(seconds, 90):.2f}",
+            ]
+        )
+    return table(
+        [
+            "median / 90th percentile",
+            "tip error",
+            "bending, °",
+            "twist, °",
+            "rank correlation, bending",
+            "twist",
+            "blocked force",
+            "core-s",
+        ],
+        rows,
+    )
+
+
+def _last(pairs: Iterable[Pair]) -> pd.DataFrame:
+    rows = [
+        pair.rows.iloc[-1].to_dict()
+        | {"mode": pair.mode, "chambers": pair.chambers, "name": pair.name}
+        for pair in pairs
+        if len(pair.rows)
+    ]
+    return pd.DataFrame(rows)
+
+
+def _off(rows: pd.DataFrame, name: str) -> pd.Series:
+    return (rows[name] - rows[f"{name}_full"]).abs()
+
+
+def _force_errors(rows: pd.DataFrame) -> pd.Series:
+    known = rows.dropna(subset=[_FORCES, f"{_FORCES}_full"])
+    return (known[_FORCES] / known[f"{_FORCES}_full"] - 1.0).abs()
+
+
+def _both(values: pd.Series, *, percent: bool) -> str:
+    known = values.dropna().to_numpy(float)
+    if not len(known):
+        return "–"
+    pair = np.median(known), np.percentile(known, 90)
+    return " / ".join(f"{100 * v:.2f} %" if percent else f"{v:.2f}" for v in pair)
+
+
+def _rank(rows: pd.DataFrame, name: str) -> str:
+    if len(rows) < 3:
+        return "–"
+    return f"{spearmanr(rows[name], rows[f'{name}_full']).statistic:.4f}"
+
+
+def _chambers(pair: Pair) -> str:
+    low = pair.chambers - pair.chambers % 3
+    return f"{low} to {low + 2}"
+
+
+def _groups(pairs: Sequence[Pair], of: Callable[[Pair], str]) -> str:
+    names = sorted({of(pair) for pair in pairs}, key=lambda name: (len(name), name))
+    rows = []
+    for name in names:
+        mine = [pair for pair in pairs if of(pair) == name]
+        cells = [name, str(len({pair.name for pair in mine}))]
+        for fidelity in _WORDS:
+            last = _last(pair for pair in mine if pair.fidelity == fidelity)
+            cells.append(_both(last["tip_error"], percent=True) if len(last) else "–")
+            cells.append(_both(_force_errors(last), percent=True) if len(last) else "–")
+        rows.append(cells)
+    return table(
+        ["", "designs", "cells: tip", "cells: force", "pieces: tip", "pieces: force"], rows
+    )
+
+
+def _by_pressure(pairs: Sequence[Pair]) -> str:
+    rows = []
+    every = pd.concat(
+        [pair.rows.assign(fidelity=pair.fidelity) for pair in pairs if len(pair.rows)]
+    )
+    for pressure, group in every.groupby("pressure_kPa"):
+        cells = [f"{pressure:g} kPa", str(len(group[group["fidelity"] == CELLS]))]
+        for fidelity in _WORDS:
+            mine = group[group["fidelity"] == fidelity]
+            cells.append(_both(mine["tip_error"], percent=True))
+            cells.append(_both(_force_errors(mine), percent=True))
+        rows.append(cells)
+    return table(
+        ["", "designs", "cells: tip", "cells: force", "pieces: tip", "pieces: force"], rows
+    )
+
+
+def _statuses(pairs: Sequence[Pair]) -> str:
+    rows = []
+    counts = Counter((pair.status_full, pair.status, pair.fidelity) for pair in pairs)
+    for full, reduced in sorted({(a, b) for a, b, _ in counts}):
+        cells = [str(counts[full, reduced, fidelity]) for fidelity in _WORDS]
+        rows.append([full, reduced, *cells])
+    return table(["full", "reduced", *_WORDS.values()], rows)
+
+
+def _worst(pairs: Sequence[Pair]) -> str:
+    known = [pair for pair in pairs if len(pair.rows)]
+    known.sort(key=lambda pair: -float(pair.rows["tip_error"].iloc[-1]))
+    rows = []
+    for pair in known[:10]:
+        last = pair.rows.iloc[-1]
+        contact = pair.first_contact_kPa
+        rows.append(
+            [
+                pair.name,
+                pair.mode,
+                f"{last['pressure_kPa']:g}",
+                f"{last['tip_error']:.2%}",
+                f"{last['bending_deg_full']:.0f}",
+                f"{last['twist_deg_full']:.0f}",
+                "–" if contact is None else f"{contact:.1f}",
+                pair.status_full,
+                pair.status,
+            ]
+        )
+    headings = ["design", "mode", "kPa", "tip error", "bending, °", "twist, °"]
+    return table([*headings, "first contact, kPa", "full", "reduced"], rows)

@@ -1,0 +1,264 @@
+"""Many designs by the reduced-order analysis, a few at a time, in all processes that are given.
+
+What is done is kept in batches beside the folder to make, so that a run that was ended goes on
+where it was; a batch counts only if it was made of the same designs, configuration and versions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import shutil
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from pagd import __version__
+from pagd.catalogue import NamedDesign
+from pagd.config import part
+from pagd.errors import Status
+from pagd.files import replaced_folder, write_text
+from pagd.record import Meter, Record
+from pagd.stages import STAGE_VERSIONS
+from pagd.stages.reduced import Reduced, analyse
+from pagd.stages.solve import Materials
+from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
+from pagd.tables import CHAMBERS, MEASURES, PERFORMANCE, TRAJECTORY, Column, concatenate, write_rows
+from pagd.tables import write_table as write_columns
+
+__all__ = ["TABLES", "run"]
+
+#: Tables of a screening: file, columns.
+TABLES: dict[str, tuple[Column, ...]] = {
+    "performance.parquet": PERFORMANCE,
+    "by_pressure.parquet": MEASURES,
+    "trajectories.parquet": TRAJECTORY,
+    "chambers.parquet": CHAMBERS,
+}
+
+# Designs of a batch: some ten seconds of work are what an end without warning costs.
+_BATCH = 10
+_KEY_NAME = "key.json"
+# Seconds between two lines that tell how far it is.
+_TELL = 10.0
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class _Batch:
+    """Designs that are analysed together, and the folder that keeps their tables."""
+
+    designs: list[NamedDesign]
+    folder: Path
+    key: str
+
+
+def run(
+    designs: Sequence[NamedDesign],
+    out: Path,
+    config: Mapping[str, Any],
+    materials: Materials,
+    *,
+    pieces: bool = False,
+    processes: int = 1,
+) -> Record:
+    """Analyse designs by their cells: performance, by pressure, trajectories and chambers.
+
+    Parameters
+    ----------
+    designs
+        The designs, in the order of the rows.
+    out
+        Folder of the stage. Batches that are done are kept in a folder beside it until all are.
+    config
+        Completed configuration; uses what the stage ``screening`` depends on.
+    materials
+        Elastomer and paper.
+    pieces
+        Whether the ends, and where chambers change, are solved too.
+    processes
+        How many at once; each has one thread.
+
+    Raises
+    ------
+    InputError
+        If the configuration rules cells out.
+    """
+    made_of = {
+        **part(config, "screening"),
+        "material": asdict(materials.elastomer),
+        "paper": asdict(materials.paper),
+        "pieces": pieces,
+    }
+    kept = out.with_name(f".{out.name}.batches")
+    batches = list(_batches(designs, kept, made_of))
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        left = [batch for batch in batches if not _is_done(batch)]
+        if len(left) < len(batches):
+            log.info("%d of %d batches are done already", len(batches) - len(left), len(batches))
+        _solve(left, len(designs), config, materials, pieces=pieces, processes=processes)
+        for name, columns in TABLES.items():
+            concatenate(folder / name, [batch.folder / name for batch in batches], columns)
+        outcome.figures |= _figures(folder)
+
+    record = run_stage(
+        "screening",
+        out,
+        work,
+        design_id=ALL_DESIGNS,
+        configuration=made_of,
+        libraries=("numba", "numpy", "pypardiso", "scipy"),
+    )
+    _discard(kept)
+    return record
+
+
+def _discard(kept: Path) -> None:
+    shutil.rmtree(kept, ignore_errors=True)
+
+
+def _batches(
+    designs: Sequence[NamedDesign], kept: Path, made_of: Mapping[str, Any]
+) -> Iterator[_Batch]:
+    for start in range(0, len(designs), _BATCH):
+        some = list(designs[start : start + _BATCH])
+        content = {
+            "designs": [named.as_json() for named in some],
+            "made_of": made_of,
+            "versions": [__version__, STAGE_VERSIONS["screening"]],
+        }
+        text = json.dumps(content, sort_keys=True, default=str)
+        key = hashlib.sha256(text.encode()).hexdigest()
+        yield _Batch(some, kept / f"{start:06d}", key)
+
+
+def _is_done(batch: _Batch) -> bool:
+    try:
+        found = json.loads((batch.folder / _KEY_NAME).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return bool(found == batch.key)
+
+
+def _solve(
+    left: Sequence[_Batch],
+    count: int,
+    config: Mapping[str, Any],
+    materials: Materials,
+    *,
+    pieces: bool,
+    processes: int,
+) -> None:
+    done, whole = count - sum(len(batch.designs) for batch in left), count
+    begun, first, told = time.monotonic(), done, 0.0
+    ended: Counter[str] = Counter()
+    # Threads of OpenMP do not survive a fork.
+    context = get_context("spawn")
+    with ProcessPoolExecutor(processes, context, initializer=_one_thread) as pool:
+        waiting: set[Future[list[str]]] = {
+            pool.submit(_batch, batch, config, materials, pieces) for batch in left
+        }
+        while waiting:
+            finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in finished:
+                statuses = future.result()
+                ended.update(statuses)
+                done += len(statuses)
+            now = time.monotonic()
+            if now - told > _TELL or not waiting:
+                told, rate = now, (done - first) / max(now - begun, 1e-9)
+                rest = (whole - done) / rate
+                log.info(
+                    "%d of %d designs, %.0f an hour, %.0f min left (%s)",
+                    done,
+                    whole,
+                    3600 * rate,
+                    rest / 60,
+                    ", ".join(f"{status} {number}" for status, number in ended.most_common()),
+                )
+
+
+def _one_thread() -> None:
+    from pagd.actuation import use_threads
+
+    use_threads(1)
+
+
+def _batch(
+    batch: _Batch, config: Mapping[str, Any], materials: Materials, pieces: bool
+) -> list[str]:
+    """Analyse the designs of a batch; the statuses they end with."""
+    found = [_safely(named, config, materials, pieces=pieces) for named in batch.designs]
+    with replaced_folder(batch.folder, _KEY_NAME) as folder:
+        write_rows(
+            folder / "performance.parquet",
+            PERFORMANCE,
+            [{key: r.row.get(key) for key in _NAMES} for r in found],
+        )
+        for name, tables in (
+            ("by_pressure.parquet", [r.by_pressure for r in found]),
+            ("trajectories.parquet", [r.trajectory for r in found]),
+            ("chambers.parquet", [r.chambers for r in found]),
+        ):
+            write_columns(folder / name, TABLES[name], _stacked(tables))
+        write_text(folder / _KEY_NAME, json.dumps(batch.key))
+    return [str(r.row["status"]) for r in found]
+
+
+_NAMES = tuple(column.name for column in PERFORMANCE)
+
+
+def _safely(
+    named: NamedDesign, config: Mapping[str, Any], materials: Materials, *, pieces: bool
+) -> Reduced:
+    """A design's result; a fault of the analysis is one design's, not the end of all."""
+    try:
+        return analyse(named, config, materials, pieces=pieces)
+    except (ArithmeticError, AssertionError, LookupError, ValueError) as error:
+        row = {
+            "design_id": named.name,
+            "name": named.name,
+            "origin": named.origin,
+            "mode": named.design.mode,
+            "fidelity": "pieces" if pieces else "cells",
+            "status": Status.not_converged.value,
+            "reason": f"A fault of the analysis: {type(error).__name__}: {error}",
+        }
+        return Reduced(row, {}, {}, {})
+
+
+def _stacked(tables: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
+    """The rows of several tables, one after the other."""
+    known = [table for table in tables if table]
+    names = list(known[0]) if known else []
+    return {name: [value for table in known for value in table[name]] for name in names}
+
+
+def _figures(folder: Path) -> dict[str, Any]:
+    from pagd.tables import read_table
+
+    table = read_table(folder / "performance.parquet")
+    seconds = table["cpu_s"].astype(float)
+    statuses = Counter(str(status) for status in table["status"])
+    modes = Counter(str(mode) for mode in table["mode"])
+    return {
+        "designs": len(seconds),
+        "statuses": dict(sorted(statuses.items())),
+        "modes": dict(sorted(modes.items())),
+        "cpu_s_median": float(_median(seconds)),
+        "cpu_s_total": float(seconds[seconds == seconds].sum()),
+    }
+
+
+def _median(values: Any) -> float:
+    import numpy as np
+
+    return float(np.nanmedian(values)) if len(values) else 0.0

@@ -1,0 +1,107 @@
+"""Tests of the command that screens many designs by their cells."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from reduced_samples import SLANTED, STRAIGHT
+
+from pagd.cli import main
+from pagd.record import read_record
+from pagd.stages import screening
+from pagd.tables import read_rows
+
+CONFIG = json.dumps(
+    {
+        "mesh": {"block_mm": 12.0},
+        "solve": {"maximum_pressure_kPa": 10.0, "recorded_step_kPa": 5.0},
+    }
+)
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    """A straight row, a slanted one, and one that cannot be built."""
+    rows = [STRAIGHT.as_dict(), SLANTED.as_dict(), STRAIGHT.as_dict() | {"H": 3}]
+    names = ["straight", "slanted", "flat"]
+    lines = [",".join(["name", *rows[0]])]
+    lines += [
+        ",".join([name, *map(str, row.values())]) for name, row in zip(names, rows, strict=True)
+    ]
+    file = tmp_path / "designs.csv"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+def screened(table: Path, out: Path, *more: str) -> int:
+    return main(["screen", str(table), "--out", str(out), "--config", CONFIG, *more])
+
+
+def test_every_design_has_a_row_and_what_was_measured(table: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert screened(table, out) == 0
+    rows = {row["design_id"]: row for row in read_rows(out / "performance.parquet")}
+    assert list(rows) == ["straight", "slanted", "flat"]
+    assert {name: row["status"] for name, row in rows.items()} == {
+        "straight": "ok",
+        "slanted": "ok",
+        "flat": "invalid_geometry",
+    }
+    assert "H = 3" in rows["flat"]["reason"]
+    assert {row["fidelity"] for row in rows.values()} == {"cells"}
+    assert rows["straight"]["twist_deg"] == pytest.approx(0, abs=1e-6)
+    assert rows["slanted"]["twist_deg"] > 1
+    assert rows["slanted"]["blocked_force_N"] > 0
+    assert rows["slanted"]["energy_balance"] < 0.01
+    by_pressure = read_rows(out / "by_pressure.parquet")
+    assert [row["pressure_kPa"] for row in by_pressure] == [0, 5, 10] * 2
+    assert len(read_rows(out / "trajectories.parquet")) == 2 * 3 * (STRAIGHT.N + 1)
+    assert len(read_rows(out / "chambers.parquet")) == 2 * 3 * STRAIGHT.N
+    record = read_record(out)
+    assert record.figures["statuses"] == {"invalid_geometry": 1, "ok": 2}
+    assert record.configuration["pieces"] is False
+
+
+def test_pieces_change_the_tip_and_are_told(table: Path, tmp_path: Path) -> None:
+    tips = []
+    for name, more in (("cells", []), ("pieces", ["--pieces"])):
+        assert screened(table, tmp_path / name, *more) == 0
+        row = read_rows(tmp_path / name / "performance.parquet")[0]
+        assert row["fidelity"] == name
+        tips.append([row["tip_x_mm"], row["tip_z_mm"]])
+    assert 0.01 < np.linalg.norm(np.subtract(*tips)) < 3
+
+
+def test_what_is_done_is_not_done_again(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, kept = tmp_path / "out", tmp_path / ".out.batches"
+
+    def ended_early(*more: str) -> None:
+        """As if it had been ended when the batches were done, and before they were removed."""
+        with monkeypatch.context() as patched:
+            patched.setattr(screening, "_discard", lambda _: None)
+            assert screened(table, out, *more) == 0
+
+    ended_early()
+    first = (out / "performance.parquet").read_bytes()
+    assert [folder.name for folder in kept.iterdir()] == ["000000"]
+    assert screened(table, out, "-v") == 0
+    assert "1 of 1 batches are done already" in capsys.readouterr().err
+    assert (out / "performance.parquet").read_bytes() == first
+    assert not kept.exists()
+    # Of another configuration they are other designs' batches.
+    ended_early()
+    assert screened(table, out, "-v", "--pressure-kPa", "5") == 0
+    assert "done already" not in capsys.readouterr().err
+
+
+def test_no_processes_are_refused(
+    table: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert screened(table, tmp_path / "out", "--processes", "0") == 2
+    assert "--processes = 0 must be at least 1" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
