@@ -32,6 +32,7 @@ _SECTION = "profile"
 _STAGES = ("geometry", "repair", "mesh", "solve", "metrics")
 #: Parts of an analysis, as the records name them, and what they are.
 _PARTS = {
+    "cells": "its cells and pieces before",
     "pattern": "pattern of the matrix",
     "assembly": "tangents and residuals",
     "residual": "residuals alone",
@@ -139,7 +140,8 @@ def _column(run: _Run) -> dict[str, float]:
     for name, (whole, parts) in analyses.items():
         column[f"**{name}**"] = whole
         for part, what in _PARTS.items():
-            column[f"{name}: {what}"] = parts.get(part, 0.0)
+            if part in parts:
+                column[f"{name}: {what}"] = parts[part]
         column[f"{name}: the rest"] = whole - sum(parts.values())
     column["solve: reading and writing"] = solve["cpu"] - sum(a for a, _ in analyses.values())
     column["metrics"] = timings["metrics"]["cpu"]

@@ -127,6 +127,8 @@ def free_config(
         "maximum_pressure_kPa": pressure_kPa,
         "recorded_step_kPa": step_kPa or pressure_kPa,
         "blocked_force": "none",
+        # What is looked at is an iteration of the whole model, and what it costs along its path.
+        "first_guess": "path",
     }
     return config
 

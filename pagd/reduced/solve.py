@@ -202,21 +202,23 @@ def _solved_cell(
     recorder = _Keeping(model)
     result = follow(model, model.assembly(), finer, recorder, _WANTED_CORRECTION)
     assert model.tie is not None
-    rows = np.stack([state.displacement for state in result.states])
+    # Behind a limit point the pressure falls: a row of cells is followed up to there.
     pressures = np.array([state.pressure_kPa for state in result.states])
+    falls = np.flatnonzero(np.diff(pressures) <= 0)
+    rising = slice(0, int(falls[0]) + 1 if len(falls) else len(pressures))
+    rows, pressures = np.stack([s.displacement for s in result.states[rising]]), pressures[rising]
+    kept = recorder.kept[rising]
     path = CellPath(pressures, rows[:, : len(mesh.mesh.points)], rows[:, -2:], model.tie)
     if design.is_straight or not half:
-        return SolvedCell(mesh, model, result, path, recorder.kept)
+        return SolvedCell(mesh, model, result, path, kept)
     whole = cell_mesh(design, channel, size, helical=False)
-    return SolvedCell(whole, model, result, path.unfolded(mesh, whole), recorder.kept)
+    return SolvedCell(whole, model, result, path.unfolded(mesh, whole), kept)
 
 
 def _reached(cells: Mapping[bool, SolvedCell]) -> tuple[FloatArray, Status, str | None]:
     """The rising pressures that all cells have reached, and why they are not more."""
     last = min(cells.values(), key=lambda cell: float(cell.path.pressure_kPa.max()))
     known = last.path.pressure_kPa
-    falls = np.flatnonzero(np.diff(known) <= 0)
-    known = known[: falls[0] + 1] if len(falls) else known
     others = [cell.path.pressure_kPa for cell in cells.values()]
     shared = [p for p in known if all(np.isclose(other, p).any() for other in others)]
     reason = last.result.reason

@@ -75,9 +75,7 @@ def _parts(reduced: ReducedRow, row: Row, pressure_kPa: float, nodes: int) -> It
 
 def _at(states: Sequence[State], load: float) -> State:
     """The state at a load, between the known ones by a polynomial through four."""
-    rising = [state.load for state in states]
-    falls = next((k for k in range(1, len(rising)) if rising[k] <= rising[k - 1]), len(rising))
-    return at_load(states[around(rising[:falls], load)], load)
+    return at_load(states[around([state.load for state in states], load)], load)
 
 
 def _internal(term: EnergyTerm, unknowns: FloatArray, parts: list[_Part]) -> FloatArray:
