@@ -22,7 +22,7 @@ from typing import Any
 from pagd import __version__
 from pagd.catalogue import NamedDesign
 from pagd.config import part
-from pagd.errors import Status
+from pagd.errors import InputError, PagdError, Status
 from pagd.files import replaced_folder, write_text
 from pagd.record import Meter, Record
 from pagd.stages import STAGE_VERSIONS
@@ -91,6 +91,7 @@ def run(
     InputError
         If the configuration rules cells out.
     """
+    _refuse_what_cells_cannot(config["solve"])
     made_of = {
         **part(config, "screening"),
         "material": asdict(materials.elastomer),
@@ -119,6 +120,19 @@ def run(
     )
     _discard(kept)
     return record
+
+
+def _refuse_what_cells_cannot(solve: Mapping[str, Any]) -> None:
+    if any(solve["gravity_m_s2"]):
+        raise InputError(
+            f"solve.gravity_m_s2 = {list(solve['gravity_m_s2'])}: must be 0 to screen designs by "
+            "their cells, which are not alike under gravity."
+        )
+    if solve["element"] not in ("auto", "hexahedron"):
+        raise InputError(
+            f"solve.element = {solve['element']!r}: must be auto or hexahedron to screen designs "
+            "by their cells."
+        )
 
 
 def _discard(kept: Path) -> None:
@@ -222,7 +236,7 @@ def _safely(
     """A design's result; a fault of the analysis is one design's, not the end of all."""
     try:
         return analyse(named, config, materials, pieces=pieces)
-    except (ArithmeticError, AssertionError, LookupError, ValueError) as error:
+    except (PagdError, ArithmeticError, AssertionError, LookupError, ValueError) as error:
         row = {
             "design_id": named.name,
             "name": named.name,

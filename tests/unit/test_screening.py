@@ -105,3 +105,24 @@ def test_no_processes_are_refused(
     assert screened(table, tmp_path / "out", "--processes", "0") == 2
     assert "--processes = 0 must be at least 1" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("solve", "why"),
+    [
+        ({"gravity_m_s2": [0, 0, -9.81]}, "solve.gravity_m_s2 = [0, 0, -9.81]: must be 0"),
+        ({"element": "taylor_hood"}, "solve.element = 'taylor_hood': must be auto or hexahedron"),
+    ],
+)
+def test_what_cells_cannot_is_refused(
+    table: Path,
+    tmp_path: Path,
+    solve: dict[str, object],
+    why: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    config = json.dumps({"solve": solve})
+    out = tmp_path / "out"
+    assert main(["screen", str(table), "--out", str(out), "--config", config]) == 2
+    assert why in capsys.readouterr().err
+    assert not out.exists()
