@@ -115,7 +115,7 @@ def _add_screen(commands: Any) -> None:
     command.add_argument(
         "--pieces",
         action="store_true",
-        help="solve the ends too, and where chambers change: tips within 0.2 %% of the full model",
+        help="solve the ends too, and where chambers change: nearer to the full model",
     )
     command.add_argument(
         "--processes",

@@ -247,6 +247,7 @@ class Continuation:
         step, rejections = control.first, 0
         if len(self.states) > 1:
             step = self.states[-1].load - self.states[-2].load
+            step = min(step, wanted[0] - self.states[-1].load) if wanted else step
         while wanted:
             known, before = self._known(), self.states[-1]
             load = self._next_load(wanted, step)

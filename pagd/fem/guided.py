@@ -48,6 +48,14 @@ class _Deviation:
             tuple(a - b for a, b in zip(state.internal, guess.internal, strict=True))
         )
 
+    def forget_beyond(self, load: float) -> None:
+        """Leave out the states from a load on."""
+        count = range(len(self.loads))
+        kept = [k for k in count if self.loads[k] < load]
+        self.unknowns = [self.unknowns[k] for k in kept]
+        self.internal = [self.internal[k] for k in kept]
+        self.loads = [self.loads[k] for k in kept]
+
     def near(self, load: float) -> list[int]:
         """Numbers of the states around a load, nearest first."""
         order = np.argsort([abs(known - load) for known in self.loads], kind="stable")
@@ -105,7 +113,9 @@ class GuidedPath:
             path, step = self._solve(loads, number, deviation, path)
             if step is None:
                 end = number
+                # What lies beyond may be of another branch.
                 solved = {k: known for k, known in solved.items() if k < end}
+                deviation.forget_beyond(loads[end])
             else:
                 solved[number] = step
         self.states = [start, *(solved[k].state for k in sorted(solved))]

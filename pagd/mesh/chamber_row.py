@@ -162,7 +162,8 @@ def gap_plane(design: Design, size: float) -> float:
 
 
 def _parts(length: float, size: float) -> int:
-    return max(1, math.ceil(length / size - _SLACK))
+    # Differences of places have round-off: equal lengths must have equal parts.
+    return max(1, math.ceil(length / size - _SLACK - _SAME))
 
 
 def _divided(marks: Sequence[float], size: float) -> FloatArray:

@@ -34,7 +34,12 @@ def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "au
         Where the tangent of a cell is singular.
     """
     row = reduced.row(_edge(reduced), channel)
-    known = _compliances(reduced, row, solver_name)
+    answers = {kind: Answers(cell.model, solver_name) for kind, cell in reduced.cells.items()}
+    try:
+        known = _compliances(reduced, row, answers)
+    finally:
+        for each in answers.values():
+            each.free()
     forces = np.full(len(reduced.pressure_kPa), np.nan)
     forces[0] = 0.0
     guess, before = None, 1.0
@@ -57,7 +62,9 @@ def _edge(reduced: ReducedRow) -> FloatArray:
     return np.array([[design.L_T, y, -design.t_b] for y in sides])
 
 
-def _compliances(reduced: ReducedRow, row: Row, solver_name: str) -> dict[bool, Loaded]:
+def _compliances(
+    reduced: ReducedRow, row: Row, answers: Mapping[bool, Answers]
+) -> dict[bool, Loaded]:
     """The compliances of all kinds of cells, as far as the row can be followed with its tip held.
 
     The moment that a cell is loaded with is the mean one of its kind in the row that answers
@@ -65,7 +72,6 @@ def _compliances(reduced: ReducedRow, row: Row, solver_name: str) -> dict[bool, 
     """
     count = len(reduced.pressure_kPa)
     chosen = sorted({*range(0, count, _EVERY), count - 1})
-    answers = {kind: Answers(cell.model, solver_name) for kind, cell in reduced.cells.items()}
     found: dict[bool, list[Compliance]] = {kind: [] for kind in answers}
     joints = reduced.design.chamber_skews()[:-1] != 0.0
     guess, before = None, 1.0
@@ -91,8 +97,6 @@ def _compliances(reduced: ReducedRow, row: Row, solver_name: str) -> dict[bool, 
             if held is not None and mine.any():
                 one = _loaded(each, reduced.cells[kind].states[number], one, moments[mine])
             found[kind].append(one)
-    for each in answers.values():
-        each.free()
     pressures = reduced.pressure_kPa[chosen]
     return {kind: Loaded(pressures, known) for kind, known in found.items()}
 

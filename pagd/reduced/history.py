@@ -50,7 +50,7 @@ def row_history(reduced: ReducedRow, cavity_volume_mm3: float) -> dict[str, NDAr
         ).sum(axis=1)
     for piece in reduced.pieces:
         followed = piece.followed
-        at = reduced.pressure_kPa[: len(followed.volumes)]
+        at = piece.pressure_kPa
         volume += _between(at, followed.volumes - followed.volumes[0])(pressures)
         energy += _between(at, followed.energies - followed.energies[0])(pressures)
     same = np.isclose(pressures[:, None], reduced.pressure_kPa, rtol=_SAME)

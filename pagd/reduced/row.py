@@ -118,9 +118,10 @@ class Row:
         for group in self._cells:
             assigned[group.points] = True
         left = np.flatnonzero(~assigned)
-        x = points[left, 0]
-        self._behind = left[x > self._starts[-1]]
-        self._wedge = left[(x < self._starts[-1]) & (x > self._starts[0] + design.L / 2)]
+        # What is before the first chamber is clamped and stays.
+        behind = self._along(len(self._kinds) - 1)[left] > design.L
+        self._behind = left[behind]
+        self._wedge = left[~behind & (self._along(0)[left] > design.L)]
         self._pieces: dict[int, Group] = {}
 
     def _within(self, k: int) -> Group:
@@ -130,12 +131,17 @@ class Row:
         alike_behind = k < last and self._kinds[k + 1] == self._kinds[k]
         low = cell.first if alike_before else 0.0
         high = cell.last if alike_behind else self.design.L
-        along = self.points[:, 0] - self._starts[k] - cell.skew * self.points[:, 1]
+        along = self._along(k)
         inside = (along >= low - _SAME_PLACE) & (along <= high + _SAME_PLACE)
         group = self._matched(inside, k, cell.mesh)
         if alike_before and alike_behind and len(group.points) < np.count_nonzero(inside):
             raise InputError("The nodes of the row are not those of its cells.")
         return group
+
+    def _along(self, k: int) -> FloatArray:
+        """Distance (n,) of the points along x behind the plane where chamber ``k`` begins."""
+        skew = self._meshes[self._kinds[k]].skew
+        return np.asarray(self.points[:, 0] - self._starts[k] - skew * self.points[:, 1])
 
     def _matched(self, chosen: BoolArray, k: int, mesh: Mesh) -> Group:
         """The points that are ``chosen`` as nodes of a part whose first chamber is ``k``."""

@@ -171,7 +171,7 @@ def solve_row(
     kinds = sorted({bool(skew) for skew in design.chamber_skews()})
     cells = {
         kind: _solved_cell(
-            design, channel, size, material, paper, wanted, kind, folded=mesh is None
+            design, channel, size, material, paper, wanted, kind, half=_is_half(kind, mesh)
         )
         for kind in kinds
     }
@@ -183,6 +183,11 @@ def solve_row(
     return ReducedRow(design, pressures, cells, pieces, status, reason)
 
 
+def _is_half(helical: bool, mesh: Mesh | None) -> bool:
+    """Whether the half of a cell is solved: of straight ones, unless pieces are of the whole."""
+    return not helical and (mesh is None or "symmetry" in mesh.surfaces)
+
+
 def _solved_cell(
     design: Design,
     channel: Channel,
@@ -192,10 +197,9 @@ def _solved_cell(
     actuation: Actuation,
     helical: bool,
     *,
-    folded: bool,
+    half: bool,
 ) -> SolvedCell:
-    """Solve a cell; straight ones in the half, of mixed rows too if they are to be ``folded``."""
-    half = not helical and (folded or design.is_straight)
+    """Solve a cell or its half, which is unfolded where its row is mixed."""
     mesh = cell_mesh(design, channel, size, helical=helical, half=half)
     finer = replace(actuation, tolerance_mm=_TOLERANCE_SHARE * actuation.tolerance_mm)
     model = Cell(mesh, material, paper, finer)
@@ -217,15 +221,21 @@ def _solved_cell(
 
 def _reached(cells: Mapping[bool, SolvedCell]) -> tuple[FloatArray, Status, str | None]:
     """The rising pressures that all cells have reached, and why they are not more."""
-    last = min(cells.values(), key=lambda cell: float(cell.path.pressure_kPa.max()))
+    last = min(
+        cells.values(),
+        key=lambda cell: (float(cell.path.pressure_kPa[-1]), cell.result.status is Status.ok),
+    )
     known = last.path.pressure_kPa
     others = [cell.path.pressure_kPa for cell in cells.values()]
     shared = [p for p in known if all(np.isclose(other, p).any() for other in others)]
-    reason = last.result.reason
+    status, reason = last.result.status, last.result.reason
+    if len(known) < len(last.result.states):
+        status = Status.not_converged
+        reason = f"At {known[-1]:.4g} kPa a chamber passes a limit point of the pressure."
     if reason and len(cells) > 1:
         kind = "slanted" if last is cells.get(True) else "straight"
         reason = f"Of the {kind} cells: {reason}"
-    return np.array(shared), last.result.status, reason
+    return np.array(shared), status, reason
 
 
 def _solved_pieces(

@@ -230,7 +230,7 @@ def _forces(reduced: ReducedRow, channel: Channel, actuation: Actuation) -> Floa
 def _force_row(
     pressure_kPa: FloatArray, forces: FloatArray, actuation: Actuation
 ) -> dict[str, Any]:
-    known = np.flatnonzero(np.isfinite(forces))
+    known = np.flatnonzero(np.isfinite(forces[1:])) + 1
     if actuation.blocked_force != "edge" or len(known) == 0:
         return {"blocked_force_N": None}
     last = int(known[-1])

@@ -45,6 +45,8 @@ TABLES: dict[str, tuple[Column, ...]] = {
 # Designs of a batch: some ten seconds of work are what an end without warning costs.
 _BATCH = 10
 _KEY_NAME = "key.json"
+# The stages whose meaning is that of a screening too.
+_OF_STAGES = ("screening", "mesh", "solve", "metrics")
 # Seconds between two lines that tell how far it is.
 _TELL = 10.0
 
@@ -147,7 +149,7 @@ def _batches(
         content = {
             "designs": [named.as_json() for named in some],
             "made_of": made_of,
-            "versions": [__version__, STAGE_VERSIONS["screening"]],
+            "versions": [__version__, *(STAGE_VERSIONS[stage] for stage in _OF_STAGES)],
         }
         text = json.dumps(content, sort_keys=True, default=str)
         key = hashlib.sha256(text.encode()).hexdigest()

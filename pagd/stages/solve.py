@@ -190,9 +190,9 @@ def _guide(
         return None
     try:
         guide = RowGuide(design, channel, mesh, made["mesh"]["block_mm"], *both, stop)
-    except InputError as error:
-        # Such as a mesh that has been refined since: the whole model does without.
-        outcome.figures["cells"] = {"status": None, "reason": str(error)}
+    except (InputError, ArithmeticError, AssertionError, LookupError, ValueError) as error:
+        # Such as a mesh that has been refined since: the whole model does without first guesses.
+        outcome.figures["cells"] = {"status": None, "reason": f"{type(error).__name__}: {error}"}
         return None
     reduced = guide.reduced
     outcome.figures["cells"] = {

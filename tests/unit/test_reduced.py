@@ -34,7 +34,7 @@ from pagd.reduced.cell_mesh import cell_mesh, cuts_of
 from pagd.reduced.compliance import Compliance
 from pagd.reduced.rod import Rod, held_force
 from pagd.reduced.row import Row, unlike_their_neighbours
-from pagd.reduced.solve import ReducedRow
+from pagd.reduced.solve import ReducedRow, solve_row
 from pagd.reduced.transfer import guess
 from pagd.rigid import RigidMotion
 from pagd.sections import place_sections, stations_of
@@ -231,3 +231,11 @@ def test_pieces_of_a_mesh_are_cut_at_its_planes() -> None:
     assert {"cavity", "paper", "outer", "symmetry"} == set(piece.mesh.surfaces)
     with pytest.raises(InputError, match=r"no planes at x = 9\.5 and 21 mm"):
         piece_between(mesh, 9.5, 21.0)
+
+
+def test_straight_rows_may_be_whole() -> None:
+    mesh = chamber_row(STRAIGHT, CHANNEL, SIZE, half=False)
+    short = replace(ACTUATION, maximum_pressure_kPa=5.0)
+    reduced = solve_row(STRAIGHT, CHANNEL, SIZE, ELASTOMER, PAPER, short, mesh)
+    assert reduced.status is Status.ok
+    assert reduced.cells[False].model.copies == 1
