@@ -108,18 +108,17 @@ class GuidedPath:
         deviation = _Deviation()
         deviation.add(start, start)
         solved: dict[int, Step] = {}
-        end = len(loads)
+        end, failure = len(loads), ""
         while (number := self._next(loads, end, solved, deviation)) is not None:
             path, step = self._solve(loads, number, deviation, path)
             if step is None:
-                end = number
+                end, failure = number, path.failure
                 # What lies beyond may be of another branch.
                 solved = {k: known for k, known in solved.items() if k < end}
                 deviation.forget_beyond(loads[end])
             else:
                 solved[number] = step
         self.states = [start, *(solved[k].state for k in sorted(solved))]
-        failure = path.failure if end < len(loads) else ""
         path = self._told(loads[:end], solved, deviation, observe, path)
         return replace(path, failure=failure)
 
@@ -186,7 +185,7 @@ class GuidedPath:
         path: LoadPath,
     ) -> LoadPath:
         """The path after all its steps were told."""
-        last = 0.0
+        last = self.states[0].load
         for k, load in enumerate(loads):
             step = solved.get(k)
             if step is None:
