@@ -11,7 +11,7 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep test verify peers lint clean distclean system-packages
+.PHONY: help run dataset sweep screen test verify peers lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -24,6 +24,9 @@ dataset: .venv/pagd-installed ## Draw the training designs only: results/dataset
 
 sweep: .venv/pagd-installed ## Do all of it with all generated designs simulated, 1,000 of them: hours.
 	snakemake --profile profiles/sweep --cores $(CORES)
+
+screen: .venv/pagd-installed ## Do all of it with all training designs, 11,000 of them, by a chamber each: hours.
+	snakemake --profile profiles/screening --cores $(CORES)
 
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.

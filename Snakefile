@@ -3,6 +3,7 @@
 #
 #   snakemake --profile profiles/default               everything
 #   snakemake --profile profiles/default generative    data set to diversity, with their pictures
+#   snakemake --profile profiles/default screening     generated designs by a chamber each, fronts
 #   snakemake --profile profiles/default summary       the tables only
 #   snakemake --profile profiles/default -n            what would be done, and why
 
@@ -24,6 +25,8 @@ wildcard_constraints:
 localrules:
     all,
     diversity_table,
+    screened,
+    fronts,
     summary_tables,
     report_page,
 
@@ -32,6 +35,7 @@ include: "workflow/rules/common.smk"  # configuration and designs, checked; inpu
 include: "workflow/rules/server.smk"  # a process that has loaded what the stages need
 include: "workflow/rules/dataset.smk"  # training designs and their reduced space
 include: "workflow/rules/generate.smk"  # new designs, how new they are, which are simulated
+include: "workflow/rules/screen.smk"  # generated and training designs by a chamber each
 include: "workflow/rules/design.smk"  # one design: geometry, repair, mesh, solve, metrics
 include: "workflow/rules/summary.smk"  # all designs: tables of performance and trajectories
 include: "workflow/rules/publish.smk"  # pictures and the page

@@ -39,6 +39,7 @@ SECTIONS = {
     "solve": ("solve",),
     "metrics": ("metrics",),
     "screening": ("channel", "limits", "mesh", "solve", "metrics"),
+    "fronts": ("screening",),
     "figures": ("figures",),
     "dataset": ("channel", "limits", "dataset"),
     "embedding": ("embedding",),

@@ -114,6 +114,7 @@ def screen(options: Namespace) -> int:
         materials_of(config, options.material, options.paper),
         pieces=options.pieces,
         processes=options.processes,
+        part_of=options.part,
     )
     found = record.figures
     print(

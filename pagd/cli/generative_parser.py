@@ -124,8 +124,26 @@ def _add_screen(commands: Any) -> None:
         metavar="N",
         help="designs at once, with one thread each (default: 1)",
     )
+    command.add_argument(
+        "--part",
+        type=_part,
+        default=(1, 1),
+        metavar="K/N",
+        help="only every N-th design from the K-th on: N jobs share a table (default: 1/1)",
+    )
     add_materials(command)
     _add_set_options(command)
+
+
+def _part(text: str) -> tuple[int, int]:
+    """The two numbers of K/N."""
+    try:
+        number, count = (int(word) for word in text.split("/"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form K/N, as 2/10") from None
+    if not 1 <= number <= count:
+        raise argparse.ArgumentTypeError(f"{text!r}: K must be from 1 to N")
+    return number, count
 
 
 def _overrides(command: argparse.ArgumentParser) -> Any:

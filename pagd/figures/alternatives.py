@@ -32,6 +32,10 @@ ALTERNATIVES: Final[Mapping[str, str]] = {
     "bending_twist": "Scatter plot of bending against twist of all simulated designs, by mode",
     "force_bending": "Scatter plot of blocked force against bending of all simulated designs",
     "novelty_performance": "Scatter plots of performance against novelty of all simulated designs",
+    "screened": "Scatter plots of bending, twist and blocked force of screened designs, generated"
+    " and training, with their Pareto fronts",
+    "screened_novelty": "Scatter plots of performance against novelty of screened designs",
+    "screened_beside_full": "Scatter plots of performance by cells against the full analysis",
 }
 
 

@@ -18,6 +18,7 @@ STAGE_VERSIONS = {
     "solve": 11,
     "metrics": 5,
     "screening": 1,
+    "fronts": 1,
     "figures": 3,
     "generative_figures": 3,
     "summary": 4,

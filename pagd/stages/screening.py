@@ -13,7 +13,7 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 from pathlib import Path
@@ -24,7 +24,7 @@ from pagd.catalogue import NamedDesign
 from pagd.config import part
 from pagd.errors import InputError, PagdError, Status
 from pagd.files import replaced_folder, write_text
-from pagd.record import Meter, Record
+from pagd.record import Meter, Record, read_record
 from pagd.stages import STAGE_VERSIONS
 from pagd.stages.reduced import Reduced, analyse
 from pagd.stages.solve import Materials
@@ -32,7 +32,7 @@ from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import CHAMBERS, MEASURES, PERFORMANCE, TRAJECTORY, Column, concatenate, write_rows
 from pagd.tables import write_table as write_columns
 
-__all__ = ["TABLES", "run"]
+__all__ = ["TABLES", "gather", "run"]
 
 #: Tables of a screening: file, columns.
 TABLES: dict[str, tuple[Column, ...]] = {
@@ -47,6 +47,7 @@ _BATCH = 10
 _KEY_NAME = "key.json"
 # The stages whose meaning is that of a screening too.
 _OF_STAGES = ("screening", "mesh", "solve", "metrics")
+_LIBRARIES = ("numba", "numpy", "pypardiso", "scipy")
 # Seconds between two lines that tell how far it is.
 _TELL = 10.0
 
@@ -70,6 +71,7 @@ def run(
     *,
     pieces: bool = False,
     processes: int = 1,
+    part_of: tuple[int, int] = (1, 1),
 ) -> Record:
     """Analyse designs by their cells: performance, by pressure, trajectories and chambers.
 
@@ -87,6 +89,9 @@ def run(
         Whether the ends, and where chambers change, are solved too.
     processes
         How many at once; each has one thread.
+    part_of
+        (k, n): only the designs k, k + n, k + 2 n and so on, counted from 1, so that n jobs share
+        the work and each part is spread over all designs as any other is.
 
     Raises
     ------
@@ -94,6 +99,8 @@ def run(
         If the configuration rules cells out.
     """
     _refuse_what_cells_cannot(config["solve"])
+    first, parts = part_of
+    mine = list(designs)[first - 1 :: parts]
     made_of = {
         **part(config, "screening"),
         "material": asdict(materials.elastomer),
@@ -101,13 +108,13 @@ def run(
         "pieces": pieces,
     }
     kept = out.with_name(f".{out.name}.batches")
-    batches = list(_batches(designs, kept, made_of))
+    batches = list(_batches(mine, kept, made_of))
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         left = [batch for batch in batches if not _is_done(batch)]
         if len(left) < len(batches):
             log.info("%d of %d batches are done already", len(batches) - len(left), len(batches))
-        _solve(left, len(designs), config, materials, pieces=pieces, processes=processes)
+        _solve(left, len(mine), config, materials, pieces=pieces, processes=processes)
         for name, columns in TABLES.items():
             concatenate(folder / name, [batch.folder / name for batch in batches], columns)
         outcome.figures |= _figures(folder)
@@ -118,10 +125,48 @@ def run(
         work,
         design_id=ALL_DESIGNS,
         configuration=made_of,
-        libraries=("numba", "numpy", "pypardiso", "scipy"),
+        libraries=_LIBRARIES,
     )
     _discard(kept)
     return record
+
+
+def gather(parts: Sequence[Path], out: Path) -> Record:
+    """Put the tables of several screenings into one folder, in their order.
+
+    Parameters
+    ----------
+    parts
+        Folders of screenings, made with the same configuration.
+    out
+        Folder of the stage.
+
+    Raises
+    ------
+    InputError
+        If a folder is no screening, or they were not made with the same configuration.
+    """
+    records = [read_record(part) for part in parts]
+    made_of = records[0].configuration if records else {}
+    for one, record in zip(parts, records, strict=True):
+        if record.stage != "screening":
+            raise InputError(f"{one}: a folder of the stage {record.stage}, not of a screening.")
+        if record.configuration != made_of:
+            raise InputError(f"{one}: screened with another configuration than {parts[0]}.")
+
+    def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        for name, columns in TABLES.items():
+            concatenate(folder / name, [one / name for one in parts], columns)
+        outcome.figures |= _figures(folder)
+
+    return run_stage(
+        "screening",
+        out,
+        work,
+        design_id=ALL_DESIGNS,
+        configuration=made_of,
+        libraries=_LIBRARIES,
+    )
 
 
 def _refuse_what_cells_cannot(solve: Mapping[str, Any]) -> None:
@@ -173,33 +218,39 @@ def _solve(
     pieces: bool,
     processes: int,
 ) -> None:
-    done, whole = count - sum(len(batch.designs) for batch in left), count
+    """Analyse the designs of the batches that are ``left``, and tell how far it is."""
+    done = count - sum(len(batch.designs) for batch in left)
     begun, first, told = time.monotonic(), done, 0.0
     ended: Counter[str] = Counter()
+    for statuses in _statuses(left, (config, materials, pieces), processes):
+        ended.update(statuses)
+        done += len(statuses)
+        now = time.monotonic()
+        if now - told > _TELL or done == count:
+            told, rate = now, (done - first) / max(now - begun, 1e-9)
+            log.info(
+                "%d of %d designs, %.0f an hour, %.0f min left (%s)",
+                done,
+                count,
+                3600 * rate,
+                (count - done) / rate / 60,
+                ", ".join(f"{status} {number}" for status, number in ended.most_common()),
+            )
+
+
+def _statuses(
+    left: Sequence[_Batch], how: tuple[Mapping[str, Any], Materials, bool], processes: int
+) -> Iterator[list[str]]:
+    """How the designs of the batches end, batch by batch as they come."""
+    if processes == 1:
+        _one_thread()
+        yield from (_batch(batch, *how) for batch in left)
+        return
     # Threads of OpenMP do not survive a fork.
     context = get_context("spawn")
     with ProcessPoolExecutor(processes, context, initializer=_one_thread) as pool:
-        waiting: set[Future[list[str]]] = {
-            pool.submit(_batch, batch, config, materials, pieces) for batch in left
-        }
-        while waiting:
-            finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-            for future in finished:
-                statuses = future.result()
-                ended.update(statuses)
-                done += len(statuses)
-            now = time.monotonic()
-            if now - told > _TELL or not waiting:
-                told, rate = now, (done - first) / max(now - begun, 1e-9)
-                rest = (whole - done) / rate
-                log.info(
-                    "%d of %d designs, %.0f an hour, %.0f min left (%s)",
-                    done,
-                    whole,
-                    3600 * rate,
-                    rest / 60,
-                    ", ".join(f"{status} {number}" for status, number in ended.most_common()),
-                )
+        for future in as_completed([pool.submit(_batch, batch, *how) for batch in left]):
+            yield future.result()
 
 
 def _one_thread() -> None:

@@ -38,7 +38,20 @@ from pagd.figures.generative.projection import (
     principal_axes,
 )
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw
-from pagd.figures.style import MODE_LOOKS, STATUS_COLOURS, mode_look, new_figure, set_resolution
+from pagd.figures.generative.screened import (
+    screened_beside_full_figure,
+    screened_figure,
+    screened_novelty_figure,
+)
+from pagd.figures.style import (
+    FAINT,
+    INK,
+    MODE_LOOKS,
+    STATUS_COLOURS,
+    mode_look,
+    new_figure,
+    set_resolution,
+)
 from pagd.record import Record, versions, write_record
 from pagd.tables import DESIGNS, GENERATED, PERFORMANCE, Column, write_rows, write_table
 
@@ -98,6 +111,7 @@ def simulated(name, origin, mode, status="ok", bending=90.0, **values):
         "status": status,
         "reason": None if status == "ok" else "why",
         "fidelity": "full",
+        "pressure_kPa": None if failed_early else 50.0,
         "bending_deg": bending,
         "twist_deg": None if failed_early else 10.0,
         "work_density_kJ_m3": None if failed_early else 2.0,
@@ -117,6 +131,14 @@ SIMULATED = [
     simulated("g0004", "generated", "twisting", "mesh_failed", bending=None),
     simulated("g0005", "generated", "twisting", novelty=None),
 ]
+
+
+def screened(kind, modes, **values):
+    """Designs by a chamber each, of rising bending."""
+    return [
+        simulated(f"{kind}{i:04d}", "generated", mode, bending=10.0 * i, fidelity="cells", **values)
+        for i, mode in enumerate(modes, 1)
+    ]
 
 
 def performance(rows=SIMULATED):
@@ -176,6 +198,9 @@ def leave_results(folder, method="tsne", dimensions=2):
     leave_table(folder / "diversity" / "hull.parquet", AREAS)
     leave_table(folder / "diversity" / "hull_points.parquet", HULLS)
     write_rows(folder / "summary" / "performance.parquet", PERFORMANCE, SIMULATED)
+    for name, kind, count in (("generated", "g", 20), ("training", "d", 10)):
+        rows = screened(kind, ["bending", "twisting", "mixed"] * count, novelty=None)
+        write_rows(folder / "screening" / name / "performance.parquet", PERFORMANCE, rows)
     return folder
 
 
@@ -524,6 +549,50 @@ def test_bending_against_twist_names_known_designs_and_crosses_failed_ones():
     crosses = [c for c in axes.collections if (c.get_paths()[0].codes == Path2D.MOVETO).sum() == 2]
     assert np.concatenate([c.get_offsets() for c in crosses]).tolist() == [[20.0, 10.0]]
     assert legend_of(figure)[3:] == ["Table 2 or published", "failed: as far as it came"]
+
+
+def test_screened_designs_are_shown_with_both_fronts():
+    new = screened("g", ["bending", "mixed"], blocked_force_N=2.0)
+    old = screened("d", ["bending", "bending", "twisting"])
+    figure = screened_figure(performance(new), performance(old))
+    assert [heading(axes) for axes in figure.axes] == [
+        "twist and bending",
+        "blocked force and bending",
+        "blocked force and twist",
+    ]
+    of_force = figure.axes[1]
+    assert points_in(of_force) == 5
+    stairs = {line.get_color(): line.get_xydata().tolist() for line in of_force.get_lines()}
+    assert stairs[INK] == [[0, 2], [20, 2], [20, 0]]
+    assert stairs[FAINT] == [[0, 0.5], [30, 0.5], [30, 0]]
+    assert legend_of(figure)[:2] == ["bending (1)", "mixed (1)"]
+
+
+def test_full_analyses_are_set_beside_cells_at_the_same_pressure():
+    cells = performance(screened("g", ["bending"] * 3, novelty=1.0))
+    full = performance(
+        [
+            simulated("g0001", "generated", "bending", bending=12.0),
+            simulated("g0002", "generated", "bending", bending=20.0, pressure_kPa=40.0),
+            simulated("g0003", "generated", "bending", "not_converged", bending=30.0),
+            simulated("g0004", "generated", "bending", bending=30.0),
+        ]
+    )
+    figure = screened_beside_full_figure(cells, full)
+    assert points_in(figure.axes[0]) == 1
+    assert heading(figure.axes[0]) == "bending (median error 16.7 %)"
+    novelty = screened_novelty_figure(cells, full).axes[0]
+    # The line between both results of a design counts too.
+    assert points_in(novelty) == 3 + 1 + 1
+    assert points_in(screened_novelty_figure(cells, None).axes[0]) == 3
+    with pytest.raises(NothingToDraw, match="simulated as a whole"):
+        screened_beside_full_figure(cells, full.iloc[1:])
+
+
+def test_only_the_wanted_pictures_are_drawn(tmp_path):
+    results = leave_results(tmp_path / "results")
+    assert draw_generative(results, tmp_path / "out", 50, names=("screened",)) == {}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"screened.png", CAPTIONS_NAME}
 
 
 def test_force_against_bending_leaves_out_what_was_not_held():

@@ -25,6 +25,7 @@ from pagd.figures.load import Path3D
 from pagd.figures.page import Study, write_page
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, comparison_table
 from pagd.figures.page.rows import rows_of
+from pagd.figures.page.screening import answer_of
 from pagd.figures.page.table import results_table
 from pagd.figures.surface import skin_of
 from pagd.record import write_record
@@ -309,6 +310,21 @@ def pictures_in(folder, names):
     (folder / "captions.json").write_text(json.dumps(captions))
 
 
+SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
+FRONTS = {
+    "training": 480,
+    "generated": 1000,
+    "comparisons": [
+        {
+            "objectives": ["bending_deg", "twist_deg", "blocked_force_N"],
+            **{"ratio": 1.23, "low": 1.04, "high": 1.45, "likely": 0.99},
+            "front": {"training": {"bending": 3}, "generated": {"mixed": 5, "twisting": 2}},
+            "front_designs": [],
+        }
+    ],
+}
+
+
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     """A run of the generative half: what its stages, pictures and summary leave."""
@@ -323,7 +339,12 @@ def study(tmp_path_factory):
     drawn = {"designs": 1000, "mode_share": shares, "novelty_mean": 1.25, "refused": refused}
     generated = stage_record(root / "generated", drawn, generator={"method": "gmm", "seed": 9})
     pictures_in(root / "simulated", SHOWN_ELSEWHERE)
-    pictures_in(root / "pictures", [name for name in CAPTIONS if name not in SHOWN_ELSEWHERE])
+    pictures_in(root / "screening", SCREENED_PICTURES)
+    elsewhere = (*SHOWN_ELSEWHERE, *SCREENED_PICTURES)
+    pictures_in(root / "pictures", [name for name in CAPTIONS if name not in elsewhere])
+    ended = {"designs": 1000, "statuses": {"ok": 990, "bending_limit": 10}, "cpu_s_median": 1.25}
+    screened = stage_record(root / "screened", ended)
+    (root / "fronts.json").write_text(json.dumps(FRONTS))
     (root / "diversity.json").write_text(json.dumps(COMPARISON))
     rows = [
         {"design_id": f"d{i}", "origin": "generated", "mode": "mixed", "status": "ok"}
@@ -339,7 +360,19 @@ def study(tmp_path_factory):
         performance=root / "performance.parquet",
         pictures=root / "pictures",
         simulated=root / "simulated",
+        screened=screened,
+        fronts=root / "fronts.json",
+        screening_pictures=root / "screening",
     )
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [(1.1, 1.3, "do more"), (0.7, 0.9, "do less"), (0.9, 1.1, "no difference is certain")],
+)
+def test_the_answer_is_as_sure_as_the_interval(low, high, words):
+    whole = FRONTS["comparisons"][0] | {"low": low, "high": high}
+    assert words in answer_of({"comparisons": [whole]})
 
 
 PICTURES_TOGETHER = ("gallery", "trajectories", "angles", "forces")
@@ -362,6 +395,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "Data set and embedding",
         "Generator and modes",
         "Novelty and diversity",
+        "What the designs can do",
         "Performance",
         "Trajectories, angles and forces",
         "Each design",
@@ -376,6 +410,9 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "<dt>mean novelty, all parameters</dt><dd>1.250</dd>",
         "<dt>simulated designs</dt><dd>7</dd>",
         "<dd>2 invalid, 1 copy of a training design, 3 duplicates</dd>",
+        "<dd>990 ok, 10 bending limit</dd>",
+        "generated designs do more: by 23 % (4 to 45 %) in volume. Of the 10 designs that none"
+        " exceeds, 7 are generated.",
     ):
         assert fact in text
     assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"
@@ -387,7 +424,7 @@ def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
     assert sorted(shown) == sorted(CAPTIONS)
     assert text.count("data:image/webp") == len(CAPTIONS)
     assert shown[0] == "embedding"
-    assert text.index("How hull") < text.index("<h2>5. Performance") < text.index("How feasibility")
+    assert text.index("How hull") < text.index("<h2>6. Performance") < text.index("How feasibility")
 
 
 def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):

@@ -10,6 +10,7 @@ import pytest
 from reduced_samples import SLANTED, STRAIGHT
 
 from pagd.cli import main
+from pagd.errors import InputError
 from pagd.record import read_record
 from pagd.stages import screening
 from pagd.tables import read_rows
@@ -126,3 +127,39 @@ def test_what_cells_cannot_is_refused(
     assert main(["screen", str(table), "--out", str(out), "--config", config]) == 2
     assert why in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_parts_share_a_table_and_are_gathered(table: Path, tmp_path: Path) -> None:
+    parts = [tmp_path / f"part{k}" for k in (1, 2)]
+    for number, part in enumerate(parts, 1):
+        assert screened(table, part, "--part", f"{number}/2") == 0
+    assert [names_in(part) for part in parts] == [["straight", "flat"], ["slanted"]]
+    record = screening.gather(parts, tmp_path / "all")
+    assert names_in(tmp_path / "all") == ["straight", "flat", "slanted"]
+    assert record.figures["statuses"] == {"invalid_geometry": 1, "ok": 2}
+    assert record.configuration == read_record(parts[0]).configuration
+    trajectories = read_rows(tmp_path / "all" / "trajectories.parquet")
+    assert {row["design_id"] for row in trajectories} == {"straight", "slanted"}
+
+
+def test_parts_of_another_configuration_are_refused(table: Path, tmp_path: Path) -> None:
+    parts = [tmp_path / "one", tmp_path / "other"]
+    for part, more in zip(parts, ([], ["--pressure-kPa", "5"]), strict=True):
+        assert screened(table, part, "--part", "3/3", *more) == 0
+    with pytest.raises(InputError, match="screened with another configuration"):
+        screening.gather(parts, tmp_path / "all")
+    assert not (tmp_path / "all").exists()
+
+
+@pytest.mark.parametrize("part", ["0/2", "3/2", "2", "a/b"])
+def test_what_is_no_part_is_refused(
+    table: Path, tmp_path: Path, part: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        screened(table, tmp_path / "out", "--part", part)
+    assert ended.value.code == 2
+    assert f"'{part}'" in capsys.readouterr().err
+
+
+def names_in(folder: Path) -> list[str]:
+    return [str(row["design_id"]) for row in read_rows(folder / "performance.parquet")]

@@ -49,6 +49,7 @@ GENERATIVE: dict[str, Any] = {
         "neighbours": 3,
     },
     "selection": {"designs": 3},
+    "screening": {"training_designs": 10, "designs_per_job": 10},
 }
 
 

@@ -110,6 +110,34 @@ def test_pictures_and_page(generative: Project) -> None:
         assert name in page
 
 
+def test_all_generated_designs_are_screened_and_compared(generative: Project) -> None:
+    generated = read_rows(generative / "generated/designs.parquet")
+    rows = read_rows(generative / "screening/generated/performance.parquet")
+    assert {row["design_id"] for row in rows} == {row["design_id"] for row in generated}
+    assert {row["fidelity"] for row in rows} == {"cells"}
+    training = read_rows(generative / "screening/training/performance.parquet")
+    assert len(training) == 10
+    assert {row["mode"] for row in training} == {"bending", "twisting"}
+    fronts = json.loads((generative / "summary/fronts.json").read_text())
+    assert (fronts["training"], fronts["generated"]) == (10, 40)
+    assert all(each["low"] <= each["ratio"] <= each["high"] for each in fronts["comparisons"])
+    page = (generative / "report/index.html").read_text()
+    assert "What the designs can do" in page
+    drawn = {path.stem for path in (generative / "figures/screening").glob("*.png")}
+    assert drawn == {"screened", "screened_novelty", "screened_beside_full"}
+
+
+def test_more_training_designs_leave_the_parts_that_are_there(generative: Project) -> None:
+    more = 'screening={"training_designs": 20, "designs_per_job": 10}'
+    answer = generative.snakemake("--dry-run", "--config", more, "--", "screening")
+    # One job more, and what is made of all.
+    assert jobs(answer)["screen_part"] == 1
+    assert {"screened", "fronts", "pictures_screened"} <= set(jobs(answer))
+    whole = ("--profile", str(ROOT / "profiles" / "screening"))
+    planned = jobs(generative.snakemake(*whole, "--dry-run", "--", "screening"))
+    assert planned["screen_part"] == 300 // 10 - 1
+
+
 def test_the_report_has_captions(generative: Project, tmp_path: Path) -> None:
     answer = generative.snakemake("--report", str(tmp_path / "report.zip"))
     assert answer.returncode == 0, answer.stderr

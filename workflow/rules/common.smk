@@ -70,10 +70,55 @@ if GENERATIVE:
         "pictures": "results/figures/generative",
     }
 
+# Designs that are analysed by a chamber each, by where their table is; comparing them with none
+# would tell nothing.
+SCREENED = {
+    "generated": CONFIG["generator"]["designs"],
+    "training": CONFIG["screening"]["training_designs"],
+}
+SCREENING = GENERATIVE and SCREENED["training"] > 0
+if SCREENING:
+    STUDY |= {
+        "screened": "results/screening/generated",
+        "fronts": "results/summary/fronts.json",
+        "screening_pictures": "results/figures/screening",
+    }
+
+SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
+
+# The stages whose meaning is that of a screening too.
+SCREENING_STAGES = ("screening", "mesh", "solve", "metrics")
+
 
 def of_generative_half(path):
     """The path as an input if the generative half is part of the run; nothing otherwise."""
     return [path] if GENERATIVE else []
+
+
+def of_screening(path):
+    """The path as an input if designs are screened; nothing otherwise."""
+    return [path] if SCREENING else []
+
+
+def designs_to_screen(wildcards):
+    """The folder of the stage that has made the table."""
+    stages = {"generated": rules.generate.output, "training": rules.dataset.output}
+    return stages[wildcards.screened][0]
+
+
+def parts_of_table(wildcards):
+    """How many parts of a job each a whole table of designs has."""
+    sizes = {"generated": CONFIG["generator"]["designs"], "training": CONFIG["dataset"]["size"]}
+    return -(-sizes[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
+
+
+def parts_to_screen(wildcards):
+    """The parts that are screened, each spread over the whole table as the others are."""
+    wanted = -(-SCREENED[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
+    numbers = range(1, min(wanted, parts_of_table(wildcards)) + 1)
+    return expand(
+        "results/screening/parts/{screened}_{part}", screened=wildcards.screened, part=numbers
+    )
 
 
 def selected_designs():

@@ -7,6 +7,7 @@ rule publish:
         "results/figures/together",
         "results/figures/simulated",
         of_generative_half("results/figures/generative"),
+        of_screening("results/figures/screening"),
         "results/report/index.html",
 
 
@@ -127,6 +128,37 @@ rule pictures_generative:
         resolution_dpi=CONFIG["figures"]["resolution_dpi"],
     message:
         "Draw embedding, mixture, hulls, and the comparison of generators."
+    script:
+        "../scripts/pictures_generative.py"
+
+
+rule pictures_screened:
+    input:
+        generated=rules.generate.output.generated,
+        screened="results/screening/generated",
+        screened_training="results/screening/training",
+        full=rules.summary_tables.output.performance,
+    output:
+        pictures=report(
+            directory("results/figures/screening"),
+            patterns=["{picture}.png"],
+            caption="../report/generative.rst",
+            category="Screened designs",
+            labels={"picture": "{picture}"},
+        ),
+    log:
+        "results/logs/pictures_screened.log",
+    benchmark:
+        "results/benchmarks/pictures_screened.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        version=STAGE_VERSIONS["generative_figures"],
+        resolution_dpi=CONFIG["figures"]["resolution_dpi"],
+        pictures=SCREENED_PICTURES,
+    message:
+        "Draw what generated and training designs can do, and how new it is."
     script:
         "../scripts/pictures_generative.py"
 

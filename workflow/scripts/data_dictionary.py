@@ -45,7 +45,10 @@ class Table(NamedTuple):
 TABLES = (
     Table(
         "Performance of all designs",
-        ("summary/performance.parquet",),
+        (
+            "summary/performance.parquet",
+            "screening/*/performance.parquet",
+        ),
         "a simulated design, whatever became of it",
         PERFORMANCE,
         """\
@@ -62,7 +65,11 @@ held; the times cover all stages and both analyses.""",
     ),
     Table(
         "Performance by pressure",
-        ("summary/by_pressure.parquet", "designs/*/metrics/performance.parquet"),
+        (
+            "summary/by_pressure.parquet",
+            "screening/*/by_pressure.parquet",
+            "designs/*/metrics/performance.parquet",
+        ),
         "a design and recorded pressure",
         MEASURES,
         """\
@@ -74,7 +81,11 @@ the angles are is told in `pagd/metrics/trajectory.py`.""",
     ),
     Table(
         "Chambers",
-        ("summary/chambers.parquet", "designs/*/metrics/chambers.parquet"),
+        (
+            "summary/chambers.parquet",
+            "screening/*/chambers.parquet",
+            "designs/*/metrics/chambers.parquet",
+        ),
         "a design, recorded pressure and chamber",
         CHAMBERS,
         """\
@@ -83,7 +94,11 @@ tip. Where a mesh of one's own was solved, even sections are numbered instead.""
     ),
     Table(
         "Trajectories",
-        ("summary/trajectories.parquet", "designs/*/metrics/trajectory.parquet"),
+        (
+            "summary/trajectories.parquet",
+            "screening/*/trajectories.parquet",
+            "designs/*/metrics/trajectory.parquet",
+        ),
         "a design, recorded pressure and section",
         TRAJECTORY,
         """\

@@ -1,17 +1,18 @@
-"""Glue of the rules pictures_generative and pictures_simulated."""
+"""Glue of the rules pictures_generative, pictures_simulated and pictures_screened."""
 
 import sys
+from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
 
-from pagd.figures.generative.draw import draw_generative
+from pagd.figures.generative.draw import MODES, PICTURES, draw_generative
 from pagd.figures.generative.results import GenerativePaths
 
 
-def main(paths: GenerativePaths, out: Path, resolution_dpi: int) -> None:
-    """Draw the pictures that the given results allow."""
+def main(paths: GenerativePaths, out: Path, resolution_dpi: int, names: Collection[str]) -> None:
+    """Draw the named pictures as far as the given results allow."""
     out.mkdir(parents=True)
-    draw_generative(paths, out, resolution_dpi)
+    draw_generative(paths, out, resolution_dpi, names)
 
 
 if "snakemake" in globals():
@@ -23,4 +24,5 @@ if "snakemake" in globals():
         paths=GenerativePaths(**places),
         out=Path(snakemake.output.pictures),
         resolution_dpi=snakemake.params.resolution_dpi,
+        names=snakemake.params.get("pictures", (*PICTURES, MODES)),
     )

@@ -90,6 +90,24 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         "Right: the mode drawn against the mode measured from bending and twist of the joints.",
         "{simulated} designs were simulated, {succeeded} ended well.",
     ),
+    "screened": (
+        "What generated and training designs can do, by a chamber each: bending and twist of the"
+        " free tip and blocked force at the last pressure reached, whatever their sign.",
+        "Stairs are Pareto fronts: no design of a kind is beyond its own.",
+        "Shown are designs that came to the last pressure, or to the limit of bending:"
+        " {screened} generated and {screened_training} training designs.",
+    ),
+    "screened_novelty": (
+        "Every screened generated design by its novelty, the distance to the nearest training"
+        " design in the standardised 16 parameters, and by what a chamber tells that it does.",
+        "Open circles: full analyses, joined to the same designs by a chamber.",
+        "The rank correlation (Spearman) is over all shown.",
+    ),
+    "screened_beside_full": (
+        "Bending, twist and blocked force by a chamber against those of the full analysis, of"
+        " designs that have both and came to the same pressure.",
+        "The median error is over designs with more than 5 % of the largest value.",
+    ),
     "distributions": (
         "The eleven independent parameters: {generated} generated designs, stacked by mode, and"
         " {trained} training designs as outline.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -21,6 +21,11 @@ from pagd.figures.generative.mixture import draw_mixture
 from pagd.figures.generative.modes import draw_modes
 from pagd.figures.generative.novelty_performance import draw_novelty_performance
 from pagd.figures.generative.results import GenerativePaths, NothingToDraw
+from pagd.figures.generative.screened import (
+    draw_screened,
+    draw_screened_beside_full,
+    draw_screened_novelty,
+)
 from pagd.figures.style import set_resolution
 from pagd.files import write_text
 
@@ -41,13 +46,19 @@ PICTURES: Final[Mapping[str, Callable[[GenerativePaths, Path], None]]] = {
     "bending_twist": draw_bending_twist,
     "force_bending": draw_force_bending,
     "novelty_performance": draw_novelty_performance,
+    "screened": draw_screened,
+    "screened_novelty": draw_screened_novelty,
+    "screened_beside_full": draw_screened_beside_full,
 }
 #: The picture of the documentation: text, so that it can be kept under version control.
-_MODES = "modes.svg"
+MODES: Final = "modes"
 
 
 def draw_generative(
-    results: Path | GenerativePaths, out: Path, resolution_dpi: int = 150
+    results: Path | GenerativePaths,
+    out: Path,
+    resolution_dpi: int = 150,
+    names: Collection[str] = (*PICTURES, MODES),
 ) -> dict[str, str]:
     """Draw every picture that has data, and write captions.json for those that were drawn.
 
@@ -59,6 +70,8 @@ def draw_generative(
         Folder of the pictures, NAME.png each, and modes.svg, a small one of the three modes.
     resolution_dpi
         Dots per inch.
+    names
+        The pictures to draw.
 
     Returns
     -------
@@ -69,13 +82,16 @@ def draw_generative(
     set_resolution(resolution_dpi)
     missing: dict[str, str] = {}
     files = {name: (draw, out / f"{name}.png") for name, draw in PICTURES.items()}
-    for name, (draw, file) in {**files, "modes": (draw_modes, out / _MODES)}.items():
+    files[MODES] = draw_modes, out / f"{MODES}.svg"
+    for name, (draw, file) in files.items():
+        if name not in names:
+            continue
         try:
             draw(paths, file)
         except NothingToDraw as reason:
             missing[name] = str(reason)
             log.info("%s is not drawn: %s", file.name, reason)
-    _write_captions(paths, out, [name for name in PICTURES if name not in missing])
+    _write_captions(paths, out, [n for n in PICTURES if n in names and n not in missing])
     return missing
 
 

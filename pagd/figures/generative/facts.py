@@ -16,6 +16,7 @@ from pagd.figures.generative.results import (
     table_or_none,
 )
 from pagd.figures.style import number
+from pagd.fronts import reached
 
 __all__ = ["facts_of"]
 
@@ -35,7 +36,12 @@ def _counts(paths: GenerativePaths) -> dict[str, Any]:
     training = table_or_none(paths.dataset / "designs.parquet")
     generated = table_or_none(paths.generated / "designs.parquet")
     simulated = table_or_none(paths.performance)
+    screened = {
+        "screened": table_or_none(paths.screened / "performance.parquet"),
+        "screened_training": table_or_none(paths.screened_training / "performance.parquet"),
+    }
     return {
+        **{name: None if t is None else len(reached(t)) for name, t in screened.items()},
         "trained": _length(training),
         "generated": _length(generated),
         "mixed": None if generated is None else int((generated["mode"] == "mixed").sum()),

@@ -39,6 +39,10 @@ class GenerativePaths:
     generated: Path
     diversity: Path
     performance: Path
+    # Designs analysed by a chamber each, and those simulated as a whole to set beside them.
+    screened: Path
+    screened_training: Path
+    full: Path
 
     @classmethod
     def under(cls, results: Path) -> Self:
@@ -49,6 +53,9 @@ class GenerativePaths:
             generated=results / "generated",
             diversity=results / "diversity",
             performance=results / "summary" / "performance.parquet",
+            screened=results / "screening" / "generated",
+            screened_training=results / "screening" / "training",
+            full=results / "summary" / "performance.parquet",
         )
 
 

@@ -13,7 +13,7 @@ from pagd.figures.page.pictures import pictures
 from pagd.figures.page.study import Study, captions_of, comparison_of, record_in
 from pagd.figures.style import number
 
-__all__ = ["SHOWN_ELSEWHERE", "comparison_table", "generative_sections"]
+__all__ = ["SHOWN_ELSEWHERE", "comparison_table", "counted", "generative_sections"]
 
 #: Pictures of simulated designs, which the section on performance shows.
 SHOWN_ELSEWHERE: Final = (
@@ -152,8 +152,8 @@ def _of_dataset(study: Study) -> list[tuple[str, str]]:
             sources[source] = sources.get(source, 0) + count
     return [
         ("training designs", _whole(found.get("size"))),
-        ("of each category", _counted(kinds)),
-        ("where from", _counted(sources)),
+        ("of each category", counted(kinds)),
+        ("where from", counted(sources)),
         ("sampling", escaped(str(found.get("sampling", "")).replace("_", " "))),
         ("valid at first draw", _acceptance(found)),
         ("seed of the data set", str(setting.get("seed", ""))),
@@ -195,9 +195,9 @@ def _of_generator(study: Study) -> list[tuple[str, str]]:
         ("generated designs", _whole(found.get("designs"))),
         ("share of each mode", escaped(", ".join(f"{m} {s}" for m, s in shares.items()))),
         ("proposed", _whole(found.get("proposed"))),
-        ("refused", _counted(found.get("refused", {}))),
-        ("corrected by the limits", _counted(found.get("corrections", {}))),
-        ("chosen for simulation", _counted(chosen.figures.get("modes", {})) if chosen else ""),
+        ("refused", counted(found.get("refused", {}))),
+        ("corrected by the limits", counted(found.get("corrections", {}))),
+        ("chosen for simulation", counted(chosen.figures.get("modes", {})) if chosen else ""),
         ("seed of the generator", str(setting.get("seed", ""))),
     ]
 
@@ -211,7 +211,8 @@ def _of_novelty(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def _counted(counts: Mapping[str, int]) -> str:
+def counted(counts: Mapping[str, int]) -> str:
+    """Return what was counted, in words."""
     words = (f"{n:,} {_word(name, n)}" for name, n in counts.items() if n)
     return escaped(", ".join(words) or ("none" if counts else ""))
 

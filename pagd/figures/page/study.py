@@ -11,7 +11,7 @@ from pagd.errors import InputError
 from pagd.record import RECORD_NAME, Record, read_record
 from pagd.tables import read_rows
 
-__all__ = ["Study", "captions_of", "comparison_of", "performance_of", "record_in"]
+__all__ = ["Study", "captions_of", "comparison_of", "fronts_of", "performance_of", "record_in"]
 
 # Beside the pictures of the generative half: name of a picture to its caption.
 _CAPTIONS = "captions.json"
@@ -25,7 +25,9 @@ class Study:
     diversity: JSON file of the comparison of generators.
     performance: Parquet table of all simulated designs, with their novelty.
     pictures: folder with NAME.png and captions.json, of data set, generator and diversity.
-    simulated: the same of simulated designs.
+    simulated, screening_pictures: the same of simulated designs, and of screened ones.
+    screened: folder of the screening of generated designs.
+    fronts: JSON file of the comparison of their Pareto fronts with those of training designs.
     """
 
     dataset: Path | None = None
@@ -36,6 +38,9 @@ class Study:
     performance: Path | None = None
     pictures: Path | None = None
     simulated: Path | None = None
+    screened: Path | None = None
+    fronts: Path | None = None
+    screening_pictures: Path | None = None
 
 
 def record_in(folder: Path | None) -> Record | None:
@@ -54,6 +59,11 @@ def performance_of(study: Study) -> list[dict[str, Any]]:
 def comparison_of(study: Study) -> dict[str, Any]:
     """Return the comparison of generators, empty if there is none."""
     return _read(study.diversity)
+
+
+def fronts_of(study: Study) -> dict[str, Any]:
+    """Return the comparison of Pareto fronts, empty if there is none."""
+    return _read(study.fronts)
 
 
 def captions_of(pictures: Path | None) -> dict[str, str]:

@@ -19,6 +19,7 @@ from pagd.figures.page.mechanics import contact_note
 from pagd.figures.page.pictures import pictures as embedded
 from pagd.figures.page.rows import Row, rows_of
 from pagd.figures.page.run import what_was_run
+from pagd.figures.page.screening import screening
 from pagd.figures.page.study import Study, captions_of, performance_of, record_in
 from pagd.figures.page.table import results_table
 from pagd.figures.style import BLOCKED, FREE, MODE_LOOKS, STRAIN_COLOURS, STRAIN_LABEL
@@ -100,6 +101,7 @@ def _sections(
     return [
         Section("run", "What was run", what_was_run(entries, rows, _records(study))),
         *generative_sections(study),
+        Section("screening", "What the designs can do", screening(study)),
         Section("performance", "Performance", _performance(entries, rows, study)),
         Section("shapes", "Deformed shapes", embedded(pictures, ("gallery",), TOGETHER)),
         Section("paths", "Trajectories, angles and forces", _paths(entries, pictures)),

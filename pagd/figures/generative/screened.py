@@ -1,0 +1,250 @@
+"""Pictures of designs that were analysed by a chamber each: what they can do, and how new it is."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.lines import Line2D
+
+from pagd.figures.generative.plane import modes_of
+from pagd.figures.generative.results import (
+    GenerativePaths,
+    NothingToDraw,
+    load_generated,
+    table_or_none,
+)
+from pagd.figures.style import FAINT, INK, mode_look, new_figure, number, save
+from pagd.fronts import OBJECTIVES, not_dominated, reached, values_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "draw_screened",
+    "draw_screened_beside_full",
+    "draw_screened_novelty",
+    "screened_beside_full_figure",
+    "screened_figure",
+    "screened_novelty_figure",
+]
+
+_UNITS: Final = {"bending_deg": "degrees", "twist_deg": "degrees", "blocked_force_N": "N"}
+_GREY: Final = "#c9d0d7"
+
+
+def draw_screened(paths: GenerativePaths, out: Path) -> None:
+    """Draw what generated and training designs can do to a PNG file.
+
+    Raises
+    ------
+    NothingToDraw
+        If either were not screened.
+    """
+    save(screened_figure(_screened(paths.screened), _screened(paths.screened_training)), out)
+
+
+def draw_screened_novelty(paths: GenerativePaths, out: Path) -> None:
+    """Draw novelty against performance of the screened generated designs to a PNG file.
+
+    Raises
+    ------
+    NothingToDraw
+        If there are none.
+    """
+    novelty = load_generated(paths).set_index("design_id")["novelty"]
+    screened = _screened(paths.screened)
+    screened = screened.assign(novelty=screened["design_id"].map(novelty))
+    save(screened_novelty_figure(screened, table_or_none(paths.full)), out)
+
+
+def draw_screened_beside_full(paths: GenerativePaths, out: Path) -> None:
+    """Draw what a chamber tells of designs against their full analyses to a PNG file.
+
+    Raises
+    ------
+    NothingToDraw
+        If no design has both.
+    """
+    save(screened_beside_full_figure(_screened(paths.screened), table_or_none(paths.full)), out)
+
+
+def screened_figure(generated: pd.DataFrame, training: pd.DataFrame) -> Figure:
+    """Return the maps: each two objectives against each other, with both Pareto fronts.
+
+    Parameters
+    ----------
+    generated, training
+        Screened designs with the columns :data:`pagd.tables.PERFORMANCE`.
+    """
+    figure = new_figure(13.0, 5.0)
+    pairs = list(combinations(OBJECTIVES, 2))
+    for axes, pair in zip(figure.subplots(1, len(pairs)), pairs, strict=True):
+        old, new = values_of(training, pair), values_of(generated, pair)
+        axes.scatter(old[:, 0], old[:, 1], s=5, c=_GREY, marker="o", linewidths=0, zorder=1)
+        _draw_modes(axes, generated, new)
+        _draw_front(axes, old, FAINT)
+        _draw_front(axes, new, INK)
+        axes.set(xlabel=_label(pair[0]), ylabel=_label(pair[1]), xlim=(0, None), ylim=(0, None))
+        axes.set_title(f"{OBJECTIVES[pair[1]]} and {OBJECTIVES[pair[0]]}")
+    handles = [
+        *_mode_handles(generated),
+        Line2D([], [], color=INK, label="front of the generated designs"),
+        Line2D(
+            [],
+            [],
+            color=_GREY,
+            marker="o",
+            linestyle="",
+            markersize=4,
+            label=f"training ({len(training):,})",
+        ),
+        Line2D([], [], color=FAINT, label="front of the training designs"),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    return figure
+
+
+def screened_novelty_figure(screened: pd.DataFrame, full: pd.DataFrame | None) -> Figure:
+    """Return the picture of novelty against each objective, full analyses joined to their cells.
+
+    Parameters
+    ----------
+    screened
+        Screened designs with a ``novelty``.
+    full
+        Designs that were simulated as a whole, if any were.
+    """
+    figure = new_figure(13.0, 5.0)
+    both = _both(screened, full)
+    for axes, name in zip(figure.subplots(1, len(OBJECTIVES)), OBJECTIVES, strict=True):
+        values = np.column_stack([screened["novelty"], values_of(screened, [name])])
+        _draw_modes(axes, screened, values)
+        if len(both):
+            cells, whole = (values_of(both, [name + end])[:, 0] for end in ("", "_full"))
+            novelty = both["novelty"].to_numpy(dtype=np.float64)
+            axes.vlines(novelty, cells, whole, color=INK, linewidth=0.9, zorder=4)
+            axes.scatter(novelty, whole, s=34, facecolor="white", edgecolor=INK, zorder=5)
+        axes.set(xlabel="novelty: distance to the nearest training design", ylim=(0, None))
+        axes.set(ylabel=_label(name), xlim=(0, None))
+        axes.set_title(f"{OBJECTIVES[name]}{_correlation(values)}")
+    handles = _mode_handles(screened)
+    if len(both):
+        handles.append(
+            Line2D(
+                [],
+                [],
+                color=INK,
+                marker="o",
+                markerfacecolor="white",
+                label="the same design, full analysis",
+            )
+        )
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    return figure
+
+
+def screened_beside_full_figure(screened: pd.DataFrame, full: pd.DataFrame | None) -> Figure:
+    """Return the picture of each objective by a chamber against that of the full analysis.
+
+    Raises
+    ------
+    NothingToDraw
+        If no design has both.
+    """
+    both = _both(screened, full)
+    if both.empty:
+        raise NothingToDraw("No screened design was simulated as a whole.")
+    figure = new_figure(13.0, 4.8)
+    for axes, name in zip(figure.subplots(1, len(OBJECTIVES)), OBJECTIVES, strict=True):
+        values = np.column_stack([values_of(both, [f"{name}_full"]), values_of(both, [name])])
+        largest = 1.05 * max(float(values.max()), 1e-9)
+        axes.plot([0, largest], [0, largest], color=FAINT, linewidth=0.8, zorder=1)
+        _draw_modes(axes, both, values, size=26.0)
+        axes.set(xlabel=f"full analysis, {_UNITS[name]}", ylabel=f"cells, {_UNITS[name]}")
+        axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
+        axes.set_title(f"{OBJECTIVES[name]}{_median_error(values)}")
+    figure.legend(
+        handles=_mode_handles(both), loc="outside lower center", ncols=len(modes_of(both))
+    )
+    return figure
+
+
+def _screened(folder: Path) -> pd.DataFrame:
+    """The screened designs that came to an equilibrium at their end."""
+    found = table_or_none(folder / "performance.parquet")
+    if found is None:
+        raise NothingToDraw("No designs were screened.")
+    some = reached(found)
+    if some.empty:
+        raise NothingToDraw("No screened design came to its end.")
+    return some
+
+
+def _both(screened: pd.DataFrame, full: pd.DataFrame | None) -> pd.DataFrame:
+    """The screened designs that have a full analysis, at the same pressure, with its columns."""
+    if full is None:
+        return screened.head(0)
+    whole = reached(full)
+    columns = ["design_id", "pressure_kPa", *OBJECTIVES]
+    both = screened.merge(whole[columns], on="design_id", suffixes=("", "_full"))
+    return both[np.isclose(both["pressure_kPa"], both["pressure_kPa_full"])]
+
+
+def _draw_modes(axes: Axes, frame: pd.DataFrame, values: np.ndarray, size: float = 9.0) -> None:
+    for mode in modes_of(frame):
+        rows, look = (frame["mode"] == mode).to_numpy(), mode_look(mode)
+        xs, ys = values[rows].T
+        axes.scatter(xs, ys, s=size, c=look.colour, marker=look.marker, linewidths=0)
+
+
+def _draw_front(axes: Axes, values: np.ndarray, colour: str) -> None:
+    """A staircase: whatever is below it is not better than a design that is on it."""
+    front = values[not_dominated(values)]
+    front = front[np.argsort(front[:, 0])]
+    xs = np.concatenate([[0.0], front[:, 0], front[-1:, 0]])
+    ys = np.concatenate([front[:1, 1], front[:, 1], [0.0]])
+    axes.step(xs, ys, where="pre", color=colour, linewidth=1.2, zorder=3)
+
+
+def _mode_handles(frame: pd.DataFrame) -> list[Line2D]:
+    counts = frame["mode"].value_counts()
+    return [
+        Line2D(
+            [],
+            [],
+            color=mode_look(mode).colour,
+            marker=mode_look(mode).marker,
+            linestyle="",
+            label=f"{mode} ({counts[mode]:,})",
+        )
+        for mode in modes_of(frame)
+    ]
+
+
+def _label(name: str) -> str:
+    size = f"|{OBJECTIVES[name]}|" if name == "twist_deg" else OBJECTIVES[name]
+    return f"{size}, {_UNITS[name]}"
+
+
+def _correlation(values: np.ndarray) -> str:
+    """Spearman's rank correlation in words, where there is one."""
+    ranks = pd.DataFrame(values).rank()
+    if len(ranks) < 3 or (ranks.nunique() < 2).any():
+        return ""
+    value = float(np.corrcoef(ranks.to_numpy(dtype=np.float64).T)[0, 1])
+    return f" (rank correlation {number(value, 2)})"
+
+
+def _median_error(values: np.ndarray) -> str:
+    """The median error in words, of what is not nearly nothing."""
+    whole, cells = values.T
+    some = whole > 0.05 * whole.max()
+    if not some.any():
+        return ""
+    error = float(np.median(np.abs(cells[some] / whole[some] - 1.0)))
+    return f" (median error {number(100 * error, 1)} %)"
