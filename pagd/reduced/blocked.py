@@ -102,9 +102,11 @@ def _compliances(
 
 
 def _loaded(answers: Answers, state: State, without: Compliance, moments: FloatArray) -> Compliance:
-    """The compliance with that under the mean of the moments (k, 3)."""
+    """The compliance with that under the mean of the moments (k, 3).
+
+    The factors of the state without a moment are still there.
+    """
     moment = moments.mean(axis=0)
-    answers.at(state)
     loaded = answers.under(state, moment)
     return without if loaded is None else Compliance(without.without, loaded, moment)
 
