@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 
@@ -37,6 +38,12 @@ def text_of(pairs: Sequence[Pair], wanted: int) -> str:
         _by_pressure(pairs),
         "How designs end, in full and reduced:",
         _statuses(pairs),
+        "What the gate makes of them. Gated: cells where they are trusted, else pieces where they are, "
+        "else the full analysis, whose errors count as none and whose seconds are those of the "
+        "study:",
+        _gate(pairs),
+        "Why cells alone, and pieces, are not trusted:",
+        _doubts(pairs),
         "The ten tips that are farthest off, cells and pieces:",
         _worst([pair for pair in pairs if pair.fidelity == PIECES]),
     ]
@@ -154,6 +161,72 @@ def _statuses(pairs: Sequence[Pair]) -> str:
         cells = [str(counts[full, reduced, fidelity]) for fidelity in _WORDS]
         rows.append([full, reduced, *cells])
     return table(["full", "reduced", *_WORDS.values()], rows)
+
+
+def _gate(pairs: Sequence[Pair]) -> str:
+    rows = []
+    for fidelity, words in _WORDS.items():
+        mine = [pair for pair in pairs if pair.fidelity == fidelity]
+        for told, some in (
+            ("trusted", [pair for pair in mine if pair.doubt is None]),
+            ("not trusted", [pair for pair in mine if pair.doubt is not None]),
+        ):
+            rows.append([f"{words}, {told}", *_errors(some, len(mine))])
+    by = {(pair.name, pair.fidelity): pair for pair in pairs}
+    names = dict.fromkeys(pair.name for pair in pairs)
+    last = {name: _trusted(by[name, CELLS], by[name, PIECES]) for name in names}
+    seconds = np.array([s for _, s in last.values()])
+    reduced = [pair for pair, _ in last.values() if pair is not None]
+    told = _errors(reduced, len(names))
+    counts = Counter("full" if pair is None else pair.fidelity for pair, _ in last.values())
+    share = ", ".join(f"{counts[k]} {k}" for k in (CELLS, PIECES, "full"))
+    rows.append([f"gated: {share}", *told[:-1], f"{np.median(seconds):.2f} / {seconds.mean():.2f}"])
+    headings = ["", "designs", "tip: median / 90th / largest", "force: median / 90th / largest"]
+    return table([*headings, "core-s: median / mean"], rows)
+
+
+def _trusted(cells: Pair, pieces: Pair) -> tuple[Pair | None, float]:
+    """The result that the gate ends with, none for the full one, and the seconds of all."""
+    if cells.doubt is None:
+        return cells, cells.cpu_s
+    if pieces.doubt is None:
+        return pieces, cells.cpu_s + pieces.cpu_s
+    return None, cells.cpu_s + pieces.cpu_s + pieces.cpu_full_s
+
+
+def _errors(pairs: Sequence[Pair], count: int) -> list[str]:
+    if not pairs:
+        return [f"0 of {count}", "–", "–", "–"]
+    last = _last(pairs)
+    seconds = np.array([pair.cpu_s for pair in pairs])
+    return [
+        f"{len(pairs)} of {count}",
+        _three(last["tip_error"]),
+        _three(_force_errors(last)),
+        f"{np.median(seconds):.2f} / {seconds.mean():.2f}",
+    ]
+
+
+def _three(values: pd.Series) -> str:
+    known = values.dropna().to_numpy(float)
+    if not len(known):
+        return "–"
+    three = np.median(known), np.percentile(known, 90), known.max()
+    return " / ".join(f"{100 * v:.2f} %" for v in three)
+
+
+def _doubts(pairs: Sequence[Pair]) -> str:
+    found = {
+        fidelity: Counter(
+            re.sub(r"-?[0-9.]+", "…", pair.doubt)
+            for pair in pairs
+            if pair.fidelity == fidelity and pair.doubt
+        )
+        for fidelity in _WORDS
+    }
+    reasons = sorted({reason for counts in found.values() for reason in counts})
+    rows = [[reason, *(str(found[f][reason]) for f in _WORDS)] for reason in reasons]
+    return table(["", *_WORDS.values()], rows)
 
 
 def _worst(pairs: Sequence[Pair]) -> str:

@@ -15,6 +15,7 @@ import pandas as pd
 from pagd.actuation import use_threads
 from pagd.catalogue import NamedDesign
 from pagd.record import read_record
+from pagd.stages.gate import doubt_of
 from pagd.stages.reduced import CELLS, PIECES, analyse
 from pagd.stages.solve import Materials
 
@@ -32,7 +33,8 @@ class Pair:
     """A design in full and reduced.
 
     rows: one row a recorded pressure that both reached: pressure_kPa, tip_error (by the full tip's
-    displacement), bending_deg, twist_deg and blocked_force_N of either. status: of either.
+    displacement), bending_deg, twist_deg and blocked_force_N of either. status: of either. doubt:
+    why the reduced result is not trusted, if it is not.
     cpu_s: of the reduced analysis, and of the full free actuation with its held tip.
     """
 
@@ -44,6 +46,7 @@ class Pair:
     status: str
     status_full: str
     first_contact_kPa: float | None
+    doubt: str | None
     cpu_s: float
     cpu_full_s: float
 
@@ -107,6 +110,7 @@ def _pair(task: tuple[NamedDesign, dict[str, Any], Any, Materials, str]) -> Pair
         status=str(row["status"]),
         status_full=full["status"],
         first_contact_kPa=row.get("first_contact_pressure_kPa"),
+        doubt=doubt_of(row, named.design),
         cpu_s=float(row["cpu_s"]),
         cpu_full_s=float(full["cpu_s"]),
     )

@@ -112,7 +112,7 @@ def screen(options: Namespace) -> int:
         options.out,
         config,
         materials_of(config, options.material, options.paper),
-        pieces=options.pieces,
+        fidelity=options.fidelity,
         processes=options.processes,
         part_of=options.part,
     )

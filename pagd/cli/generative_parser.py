@@ -113,9 +113,11 @@ def _add_screen(commands: Any) -> None:
         "designs", type=Path, help="table of designs: CSV, or Parquet as pagd writes it"
     )
     command.add_argument(
-        "--pieces",
-        action="store_true",
-        help="solve the ends too, and where chambers change: nearer to the full model",
+        "--fidelity",
+        choices=("cells", "pieces", "gated"),
+        default="cells",
+        help="cells alone; pieces: the ends too, and where chambers change, nearer to the full"
+        " model; gated: the simplest one that is trusted, up to the full model (default: cells)",
     )
     command.add_argument(
         "--processes",

@@ -17,10 +17,10 @@ STAGE_VERSIONS = {
     "mesh": 3,
     "solve": 11,
     "metrics": 5,
-    "screening": 1,
+    "screening": 2,
     "fronts": 1,
     "figures": 3,
     "generative_figures": 3,
-    "summary": 4,
+    "summary": 5,
     "report": 5,
 }

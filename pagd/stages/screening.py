@@ -26,13 +26,18 @@ from pagd.errors import InputError, PagdError, Status
 from pagd.files import replaced_folder, write_text
 from pagd.record import Meter, Record, read_record
 from pagd.stages import STAGE_VERSIONS
-from pagd.stages.reduced import Reduced, analyse
+from pagd.stages.gate import doubt_of, gated
+from pagd.stages.reduced import CELLS, PIECES, Reduced, analyse
 from pagd.stages.solve import Materials
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 from pagd.tables import CHAMBERS, MEASURES, PERFORMANCE, TRAJECTORY, Column, concatenate, write_rows
 from pagd.tables import write_table as write_columns
 
-__all__ = ["TABLES", "gather", "run"]
+__all__ = ["FIDELITIES", "TABLES", "gather", "run"]
+
+GATED = "gated"
+#: What a screening may consist of.
+FIDELITIES = (CELLS, PIECES, GATED)
 
 #: Tables of a screening: file, columns.
 TABLES: dict[str, tuple[Column, ...]] = {
@@ -69,7 +74,7 @@ def run(
     config: Mapping[str, Any],
     materials: Materials,
     *,
-    pieces: bool = False,
+    fidelity: str = CELLS,
     processes: int = 1,
     part_of: tuple[int, int] = (1, 1),
 ) -> Record:
@@ -85,8 +90,9 @@ def run(
         Completed configuration; uses what the stage ``screening`` depends on.
     materials
         Elastomer and paper.
-    pieces
-        Whether the ends, and where chambers change, are solved too.
+    fidelity
+        One of :data:`FIDELITIES`: cells alone; with pieces, the ends and where chambers change; or
+        gated, the simplest analysis that is trusted, see :mod:`pagd.stages.gate`.
     processes
         How many at once; each has one thread.
     part_of
@@ -105,7 +111,7 @@ def run(
         **part(config, "screening"),
         "material": asdict(materials.elastomer),
         "paper": asdict(materials.paper),
-        "pieces": pieces,
+        "fidelity": fidelity,
     }
     kept = out.with_name(f".{out.name}.batches")
     batches = list(_batches(mine, kept, made_of))
@@ -114,7 +120,7 @@ def run(
         left = [batch for batch in batches if not _is_done(batch)]
         if len(left) < len(batches):
             log.info("%d of %d batches are done already", len(batches) - len(left), len(batches))
-        _solve(left, len(mine), config, materials, pieces=pieces, processes=processes)
+        _solve(left, len(mine), config, materials, fidelity, processes)
         for name, columns in TABLES.items():
             concatenate(folder / name, [batch.folder / name for batch in batches], columns)
         outcome.figures |= _figures(folder)
@@ -214,15 +220,14 @@ def _solve(
     count: int,
     config: Mapping[str, Any],
     materials: Materials,
-    *,
-    pieces: bool,
+    fidelity: str,
     processes: int,
 ) -> None:
     """Analyse the designs of the batches that are ``left``, and tell how far it is."""
     done = count - sum(len(batch.designs) for batch in left)
     begun, first, told = time.monotonic(), done, 0.0
     ended: Counter[str] = Counter()
-    for statuses in _statuses(left, (config, materials, pieces), processes):
+    for statuses in _statuses(left, (config, materials, fidelity), processes):
         ended.update(statuses)
         done += len(statuses)
         now = time.monotonic()
@@ -239,7 +244,7 @@ def _solve(
 
 
 def _statuses(
-    left: Sequence[_Batch], how: tuple[Mapping[str, Any], Materials, bool], processes: int
+    left: Sequence[_Batch], how: tuple[Mapping[str, Any], Materials, str], processes: int
 ) -> Iterator[list[str]]:
     """How the designs of the batches end, batch by batch as they come."""
     if processes == 1:
@@ -260,10 +265,10 @@ def _one_thread() -> None:
 
 
 def _batch(
-    batch: _Batch, config: Mapping[str, Any], materials: Materials, pieces: bool
+    batch: _Batch, config: Mapping[str, Any], materials: Materials, fidelity: str
 ) -> list[str]:
     """Analyse the designs of a batch; the statuses they end with."""
-    found = [_safely(named, config, materials, pieces=pieces) for named in batch.designs]
+    found = [_safely(named, config, materials, fidelity) for named in batch.designs]
     with replaced_folder(batch.folder, _KEY_NAME) as folder:
         write_rows(
             folder / "performance.parquet",
@@ -284,18 +289,22 @@ _NAMES = tuple(column.name for column in PERFORMANCE)
 
 
 def _safely(
-    named: NamedDesign, config: Mapping[str, Any], materials: Materials, *, pieces: bool
+    named: NamedDesign, config: Mapping[str, Any], materials: Materials, fidelity: str
 ) -> Reduced:
     """A design's result; a fault of the analysis is one design's, not the end of all."""
     try:
-        return analyse(named, config, materials, pieces=pieces)
+        if fidelity == GATED:
+            return gated(named, config, materials)
+        found = analyse(named, config, materials, pieces=fidelity == PIECES)
+        found.row["doubt"] = doubt_of(found.row, named.design)
+        return found
     except (PagdError, ArithmeticError, AssertionError, LookupError, ValueError) as error:
         row = {
             "design_id": named.name,
             "name": named.name,
             "origin": named.origin,
             "mode": named.design.mode,
-            "fidelity": "pieces" if pieces else "cells",
+            "fidelity": CELLS if fidelity == GATED else fidelity,
             "status": Status.not_converged.value,
             "reason": f"A fault of the analysis: {type(error).__name__}: {error}",
         }
@@ -303,10 +312,17 @@ def _safely(
 
 
 def _stacked(tables: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
-    """The rows of several tables, one after the other."""
+    """The rows of several tables, one after the other; null where one has no such column."""
     known = [table for table in tables if table]
-    names = list(known[0]) if known else []
-    return {name: [value for table in known for value in table[name]] for name in names}
+    lengths = [len(table["pressure_kPa"]) for table in known]
+    return {
+        name: [
+            value
+            for table, length in zip(known, lengths, strict=True)
+            for value in table.get(name, [None] * length)
+        ]
+        for name in dict.fromkeys(name for table in known for name in table)
+    }
 
 
 def _figures(folder: Path) -> dict[str, Any]:
@@ -316,10 +332,13 @@ def _figures(folder: Path) -> dict[str, Any]:
     seconds = table["cpu_s"].astype(float)
     statuses = Counter(str(status) for status in table["status"])
     modes = Counter(str(mode) for mode in table["mode"])
+    fidelities = Counter(str(fidelity) for fidelity in table["fidelity"])
     return {
         "designs": len(seconds),
         "statuses": dict(sorted(statuses.items())),
         "modes": dict(sorted(modes.items())),
+        "doubted": sum(1 for doubt in table["doubt"] if isinstance(doubt, str)),
+        "fidelities": dict(sorted(fidelities.items())),
         "cpu_s_median": float(_median(seconds)),
         "cpu_s_total": float(seconds[seconds == seconds].sum()),
     }

@@ -67,6 +67,12 @@ PERFORMANCE = (
     Column("status", "string", "", "how the design ended"),
     Column("reason", "string", "", "why, where the status is not ok"),
     Column("fidelity", "string", "", "full, pieces or cells: how much of the actuator was solved"),
+    Column(
+        "doubt",
+        "string",
+        "",
+        "why it is not trusted, or of a gated one what was simpler; null: it is",
+    ),
     Column("pressure_kPa", "double", "kPa", "pressure reached; the figures below are for it"),
     Column(
         "largest_pressure_kPa", "double", "kPa", "largest along the path; it may have fallen since"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from reduced_samples import SLANTED, STRAIGHT
 from pagd.cli import main
 from pagd.errors import InputError
 from pagd.record import read_record
-from pagd.stages import screening
+from pagd.stages import gate, screening
 from pagd.tables import read_rows
 
 CONFIG = json.dumps(
@@ -63,12 +64,12 @@ def test_every_design_has_a_row_and_what_was_measured(table: Path, tmp_path: Pat
     assert len(read_rows(out / "chambers.parquet")) == 2 * 3 * STRAIGHT.N
     record = read_record(out)
     assert record.figures["statuses"] == {"invalid_geometry": 1, "ok": 2}
-    assert record.configuration["pieces"] is False
+    assert record.configuration["fidelity"] == "cells"
 
 
 def test_pieces_change_the_tip_and_are_told(table: Path, tmp_path: Path) -> None:
     tips = []
-    for name, more in (("cells", []), ("pieces", ["--pieces"])):
+    for name, more in (("cells", []), ("pieces", ["--fidelity", "pieces"])):
         assert screened(table, tmp_path / name, *more) == 0
         row = read_rows(tmp_path / name / "performance.parquet")[0]
         assert row["fidelity"] == name
@@ -163,3 +164,60 @@ def test_what_is_no_part_is_refused(
 
 def names_in(folder: Path) -> list[str]:
     return [str(row["design_id"]) for row in read_rows(folder / "performance.parquet")]
+
+
+def test_where_cells_are_doubtful_the_next_better_analysis_is_run(
+    table: Path, tmp_path: Path
+) -> None:
+    assert screened(table, tmp_path / "gated", "--fidelity", "gated") == 0
+    rows = {row["design_id"]: row for row in read_rows(tmp_path / "gated" / "performance.parquet")}
+    assert STRAIGHT.N < 6
+    assert rows["straight"]["fidelity"] == "pieces"
+    assert rows["straight"]["doubt"] == (
+        f"Of {STRAIGHT.N} chambers the ends are too much for cells alone."
+    )
+    assert (rows["flat"]["fidelity"], rows["flat"]["doubt"]) == ("cells", None)
+
+
+def test_a_design_that_pieces_cannot_is_run_in_full(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = "Too far from anything."
+    monkeypatch.setattr(
+        gate, "doubt_of", lambda row, design: told if row["status"] == "ok" else None
+    )
+    assert screened(table, tmp_path / "out", "--fidelity", "gated") == 0
+    rows = {row["design_id"]: row for row in read_rows(tmp_path / "out" / "performance.parquet")}
+    assert rows["straight"]["fidelity"] == rows["slanted"]["fidelity"] == "full"
+    assert rows["slanted"]["doubt"] == told
+    assert rows["slanted"]["unknowns"] > 0
+    by_pressure = read_rows(tmp_path / "out" / "by_pressure.parquet")
+    assert {row["fidelity"] for row in by_pressure} == {"full"}
+    assert read_record(tmp_path / "out").figures["fidelities"] == {"cells": 1, "full": 2}
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({}, None),
+        ({"status": "bending_limit"}, None),
+        ({"status": "invalid_geometry"}, None),
+        ({"status": "buckled"}, "ends as buckled"),
+        ({"first_contact_pressure_kPa": 31.25}, "touch from 31.2 kPa"),
+        ({"first_contact_pressure_kPa": 31.25, "fidelity": "pieces"}, None),
+        ({"blocked_force_status": "not_converged"}, "No blocked force"),
+        ({"bending_deg": 160.0}, "bends by 160°"),
+        ({"bending_deg": 160.0, "blocked_force_N": None, "blocked_force_status": None}, None),
+    ],
+)
+def test_what_makes_a_result_doubtful(changed: dict[str, object], words: str | None) -> None:
+    row = {
+        "status": "ok",
+        "fidelity": "cells",
+        "bending_deg": 90.0,
+        "blocked_force_N": 0.1,
+        "blocked_force_status": "ok",
+        "first_contact_pressure_kPa": None,
+    }
+    told = gate.doubt_of(row | changed, SLANTED if SLANTED.N >= 6 else replace(SLANTED, N=8))
+    assert (told is None) if words is None else (told is not None and words in told)

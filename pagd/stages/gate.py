@@ -1,0 +1,116 @@
+"""Which result of a simpler analysis is to be trusted, and what is run where none is.
+
+Cells alone leave out that the ends of a row are unlike its middle. Pieces leave out what is not
+periodic. Neither knows its error; but where errors were large beside full analyses
+(``benchmarks/reduced.py``), something showed it that both know at no cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from pagd.catalogue import NamedDesign
+from pagd.design import Design
+from pagd.errors import Status
+from pagd.record import Record
+from pagd.stages import geometry, mesh, metrics, repair, solve
+from pagd.stages.reduced import Reduced, analyse
+from pagd.stages.solve import Materials
+from pagd.summary import GATHERED, performance_row
+from pagd.tables import read_table
+
+__all__ = ["doubt_of", "full_analysis", "gated"]
+
+# With fewer chambers the ends are too much of a row for cells alone.
+_FEW: Final = 6
+# Degrees: held tips of rows that would bend further are too far from their free shape.
+_FAR: Final = 150.0
+_REACHED: Final = (Status.ok.value, Status.bending_limit.value, Status.no_actuation.value)
+# What no other analysis would change.
+_FINAL: Final = (Status.invalid_geometry.value,)
+
+
+def doubt_of(row: Mapping[str, Any], design: Design) -> str | None:
+    """Why the reduced result of a design is not to be trusted; none where it is.
+
+    Parameters
+    ----------
+    row
+        Its row of the table of performance, of cells alone or with pieces.
+    design
+        The design.
+    """
+    status = row["status"]
+    if status in _FINAL:
+        return None
+    if status not in _REACHED:
+        return f"The reduced analysis ends as {status}."
+    if row["fidelity"] == "cells" and design.N < _FEW:
+        return f"Of {design.N} chambers the ends are too much for cells alone."
+    contact = row.get("first_contact_pressure_kPa")
+    if row["fidelity"] == "cells" and contact is not None:
+        return f"Walls touch from {contact:.3g} kPa on, not alike in all chambers."
+    if row.get("blocked_force_status") not in (None, Status.ok.value):
+        return "No blocked force was found at the last pressure."
+    bending = row.get("bending_deg")
+    if row.get("blocked_force_N") is not None and bending is not None and abs(bending) > _FAR:
+        return f"A row that bends by {bending:.0f}° is held far from its free shape."
+    return None
+
+
+def gated(named: NamedDesign, config: Mapping[str, Any], materials: Materials) -> Reduced:
+    """The simplest analysis of a design that is trusted: cells, with pieces, or in full.
+
+    ``doubt`` in its row tells why the one before was not; the times are of all that were run.
+
+    Parameters
+    ----------
+    named, config, materials
+        As of :func:`pagd.stages.reduced.analyse`.
+    """
+    found = analyse(named, config, materials, pieces=False)
+    for better in (partial(analyse, pieces=True), full_analysis):
+        doubt = doubt_of(found.row, named.design)
+        if doubt is None:
+            break
+        before, found = found.row, better(named, config, materials)
+        times = {key: round(before[key] + found.row[key], 4) for key in ("cpu_s", "wall_s")}
+        found.row.update(doubt=doubt, **times)
+    return found
+
+
+def full_analysis(named: NamedDesign, config: Mapping[str, Any], materials: Materials) -> Reduced:
+    """All stages of a design in folders that are thrown away: its row, and its tables.
+
+    Parameters
+    ----------
+    named
+        The design.
+    config
+        Completed configuration.
+    materials
+        Elastomer and paper.
+    """
+    with TemporaryDirectory(prefix="pagd-") as folder:
+        out = Path(folder)
+        record = _stages(named, out, config, materials)
+        files = [out / "metrics" / name for _, name, _ in GATHERED]
+        tables = [dict(read_table(file)) if file.is_file() else {} for file in files]
+        return Reduced(performance_row(record), *tables)
+
+
+def _stages(
+    named: NamedDesign, out: Path, config: Mapping[str, Any], materials: Materials
+) -> Record:
+    geometry.run(named, out / "geometry", config)
+    repair.run(out / "geometry", out / "repair", config)
+    mesh.run(out / "geometry", out / "repair", out / "mesh", config)
+    solve.run(out / "mesh", out / "solve", config, materials)
+    folders = metrics.Folders(
+        **{stage: out / stage for stage in ("geometry", "repair", "mesh", "solve")}
+    )
+    return metrics.run(folders, out / "metrics", config)
