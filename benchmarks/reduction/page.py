@@ -38,9 +38,11 @@ def text_of(pairs: Sequence[Pair], wanted: int) -> str:
         _by_pressure(pairs),
         "How designs end, in full and reduced:",
         _statuses(pairs),
-        "What the gate makes of them. Gated: cells where they are trusted, else pieces where they are, "
-        "else the full analysis, whose errors count as none and whose seconds are those of the "
-        "study:",
+        wrapped(
+            "What the gate makes of them. Gated: cells where they are trusted, else pieces where "
+            "they are, else the full analysis, whose errors count as none and whose seconds are "
+            "those of the study:"
+        ),
         _gate(pairs),
         "Why cells alone, and pieces, are not trusted:",
         _doubts(pairs),
