@@ -220,7 +220,7 @@ def _three(values: pd.Series) -> str:
 def _doubts(pairs: Sequence[Pair]) -> str:
     found = {
         fidelity: Counter(
-            re.sub(r"-?[0-9.]+", "…", pair.doubt)
+            re.sub(r"\d+(\.\d+)?", "…", pair.doubt)
             for pair in pairs
             if pair.fidelity == fidelity and pair.doubt
         )

@@ -19,8 +19,11 @@ FloatArray = NDArray[np.float64]
 
 __all__ = ["blocked_forces"]
 
-# Compliances are computed at every third recorded pressure, and the last; they change slowly.
-_EVERY = 3
+# Compliances change slowly: they are computed at so many recorded pressures, evenly spread from the
+# first to the last.
+_PRESSURES = 4
+# A pressure at which no equilibrium is found is come to by so many halvings of the way there.
+_HALVINGS = 4
 
 
 def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "auto") -> FloatArray:
@@ -42,17 +45,45 @@ def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "au
             each.free()
     forces = np.full(len(reduced.pressure_kPa), np.nan)
     forces[0] = 0.0
-    guess, before = None, 1.0
-    for number in range(1, len(forces)):
-        pressure = float(reduced.pressure_kPa[number])
-        rod = _rod(reduced, row, {kind: one.at(pressure) for kind, one in known.items()}, number)
-        start = None if guess is None else guess * (pressure / before)
-        found = held_force(rod, start)
-        if found is None:
+    held = _Held(reduced, row, known)
+    for number, pressure in enumerate(reduced.pressure_kPa[1:], 1):
+        if not held.go_on_to(float(pressure)):
             break
-        forces[number], guess = found
-        before = pressure
+        forces[number] = held.force
     return forces
+
+
+class _Held:
+    """The row with its tip held, at rising pressures."""
+
+    def __init__(self, reduced: ReducedRow, row: Row, known: Mapping[bool, Loaded]) -> None:
+        self._reduced, self._row, self.known = reduced, row, known
+        self._pressure = 0.0
+        self._unknowns: FloatArray | None = None
+        self.force = 0.0
+        self.moments = np.zeros((reduced.design.N - 1, 3))
+
+    def go_on_to(self, pressure_kPa: float, halvings: int = _HALVINGS) -> bool:
+        """Find the equilibrium at a pressure, if need be by pressures in between."""
+        rod = self._rod(pressure_kPa)
+        start = None
+        if self._unknowns is not None:
+            start = self._unknowns * (pressure_kPa / self._pressure)
+        found = held_force(rod, start)
+        if found is not None:
+            self._pressure, (self.force, self._unknowns) = pressure_kPa, found
+            self.moments = rod.moments(self._unknowns)
+            return True
+        between = 0.5 * (self._pressure + pressure_kPa)
+        return (
+            halvings > 0
+            and self.go_on_to(between, halvings - 1)
+            and self.go_on_to(pressure_kPa, halvings - 1)
+        )
+
+    def _rod(self, pressure_kPa: float) -> Rod:
+        known = {kind: one.at(pressure_kPa) for kind, one in self.known.items()}
+        return _rod(self._reduced, self._row, known, pressure_kPa)
 
 
 def _edge(reduced: ReducedRow) -> FloatArray:
@@ -65,54 +96,48 @@ def _edge(reduced: ReducedRow) -> FloatArray:
 def _compliances(
     reduced: ReducedRow, row: Row, answers: Mapping[bool, Answers]
 ) -> dict[bool, Loaded]:
-    """The compliances of all kinds of cells, as far as the row can be followed with its tip held.
+    """The compliances of all kinds of cells.
 
     The moment that a cell is loaded with is the mean one of its kind in the row that answers
-    moments as cells without one do.
+    moments as cells without one do. What one does not bear changes it as that before did.
     """
     count = len(reduced.pressure_kPa)
-    chosen = sorted({*range(0, count, _EVERY), count - 1})
+    chosen = sorted({int(k) for k in np.linspace(0, count - 1, _PRESSURES).round()})
+    constant: dict[bool, list[Compliance]] = {kind: [] for kind in answers}
     found: dict[bool, list[Compliance]] = {kind: [] for kind in answers}
     joints = reduced.design.chamber_skews()[:-1] != 0.0
-    guess, before = None, 1.0
-    for number in chosen:
-        pressure = float(reduced.pressure_kPa[number])
-        without = {
-            kind: Compliance(one, one, np.zeros(3))
-            for kind, one in (
-                (kind, each.at(reduced.cells[kind].states[number]))
-                for kind, each in answers.items()
-            )
-        }
-        held = None
-        if number:
-            rod = _rod(reduced, row, without, number)
-            held = held_force(rod, None if guess is None else guess * (pressure / before))
-        if held is not None:
-            guess, before = held[1], pressure
-            moments = rod.moments(guess)
+    held = _Held(reduced, row, {})
+    for count, number in enumerate(chosen, 1):
+        states = {kind: reduced.cells[kind].states[number] for kind in answers}
         for kind, each in answers.items():
-            one = without[kind]
-            mine = joints == kind
-            if held is not None and mine.any():
-                one = _loaded(each, reduced.cells[kind].states[number], one, moments[mine])
-            found[kind].append(one)
-    pressures = reduced.pressure_kPa[chosen]
+            constant[kind].append(Compliance.constant(each.at(states[kind])))
+        pressures = reduced.pressure_kPa[chosen[:count]]
+        held.known = {kind: Loaded(pressures, known) for kind, known in constant.items()}
+        is_held = number > 0 and held.go_on_to(float(pressures[-1]))
+        for kind, each in answers.items():
+            one, before = constant[kind][-1], (found[kind] or constant[kind])[-1]
+            moments = held.moments[joints == kind]
+            loaded = _loaded(each, states[kind], one, moments) if is_held else None
+            found[kind].append(loaded or one.changed_as(before))
     return {kind: Loaded(pressures, known) for kind, known in found.items()}
 
 
-def _loaded(answers: Answers, state: State, without: Compliance, moments: FloatArray) -> Compliance:
-    """The compliance with that under the mean of the moments (k, 3).
+def _loaded(
+    answers: Answers, state: State, without: Compliance, moments: FloatArray
+) -> Compliance | None:
+    """The compliance with that under the mean of the moments (k, 3); none where that is too much.
 
     The factors of the state without a moment are still there.
     """
-    moment = moments.mean(axis=0)
+    moment = moments.mean(axis=0) if len(moments) else np.zeros(3)
+    if not moment.any():
+        return without
     loaded = answers.under(state, moment)
-    return without if loaded is None else Compliance(without.without, loaded, moment)
+    return None if loaded is None else Compliance(without.without, loaded, moment)
 
 
-def _rod(reduced: ReducedRow, row: Row, known: Mapping[bool, Compliance], number: int) -> Rod:
-    pressure, design = float(reduced.pressure_kPa[number]), reduced.design
+def _rod(reduced: ReducedRow, row: Row, known: Mapping[bool, Compliance], pressure: float) -> Rod:
+    design = reduced.design
     shapes = {kind: cell.path.at(pressure) for kind, cell in reduced.cells.items()}
     pieces = [piece.at(pressure) for piece in reduced.pieces]
     places = row.places(shapes, pieces)

@@ -45,6 +45,15 @@ class Compliance:
     loaded: FloatArray
     moment: FloatArray
 
+    @classmethod
+    def constant(cls, without: FloatArray) -> Compliance:
+        """The compliance (6, 3) whatever the moment."""
+        return cls(without, without, np.zeros(3))
+
+    def changed_as(self, other: Compliance) -> Compliance:
+        """The same without a moment, changed by one as the ``other`` is."""
+        return Compliance(self.without, self.without + other.loaded - other.without, other.moment)
+
     def answers(self, moments: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rotation vectors and displacements (k, 3) by moments (k, 3)."""
         square = float(self.moment @ self.moment)

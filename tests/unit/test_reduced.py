@@ -191,7 +191,7 @@ def test_a_rod_of_many_joints_is_a_beam() -> None:
         rotations=np.tile(rotation, (joints, 1, 1)),
         displacements=np.tile([pitch, 0.0, 0.0], (joints, 1)),
         centres=np.tile([pitch, 0.0, 0.0], (joints, 1)),
-        compliances=[Compliance(answer, answer, np.zeros(3))] * joints,
+        compliances=[Compliance.constant(answer)] * joints,
         edge=np.zeros((2, 3)),
         height=0.0,
         is_planar=True,
