@@ -14,6 +14,7 @@ import argparse
 import sys
 
 from performance.bounds import machine_rates, measured, text_of
+from performance.memory import memory_of
 from performance.options import add_examples, command_of, must_be_positive
 from performance.origin import origin_lines
 from performance.page import must_have_section, publish
@@ -39,9 +40,12 @@ def main() -> None:
             for name in options.designs:
                 print(name, file=sys.stderr, flush=True)
                 found[name] = measured(name, options.pressure, options.repeats)
+            memory = {name: memory_of(name) for name in options.designs}
         usual = vars(_parser().parse_args([]))
         first = origin_lines(command_of("benchmarks/bounds.py", vars(options), usual))
-        publish(options.page, _SECTION, f"{first}\n\n{text_of(rates, found, options.pressure)}")
+        publish(
+            options.page, _SECTION, f"{first}\n\n{text_of(rates, found, memory, options.pressure)}"
+        )
     except InputError as error:
         parser.error(str(error))
 

@@ -28,6 +28,7 @@ __all__ = [
     "packaged_tables",
     "part",
     "part_as_json",
+    "refusal_of_cells",
     "retyped",
 ]
 
@@ -122,6 +123,27 @@ def check_study(config: Mapping[str, Any], where: str) -> None:
                 raise InputError(
                     f"{where}: {section}.{key} = {value:g} must be at most {name} = {bound:g}."
                 )
+
+
+def refusal_of_cells(solve: Mapping[str, Any]) -> str | None:
+    """Why designs cannot be screened by their cells under such settings; none where they can.
+
+    Parameters
+    ----------
+    solve
+        The section of the completed configuration.
+    """
+    if any(solve["gravity_m_s2"]):
+        return (
+            f"solve.gravity_m_s2 = {list(solve['gravity_m_s2'])}: must be 0 to screen designs by "
+            "their cells, which are not alike under gravity."
+        )
+    if solve["element"] not in ("auto", "hexahedron"):
+        return (
+            f"solve.element = {solve['element']!r}: must be auto or hexahedron to screen designs "
+            "by their cells."
+        )
+    return None
 
 
 def completed(given: Mapping[str, Any]) -> Config:

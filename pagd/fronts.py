@@ -3,7 +3,10 @@
 A design is better than another if it bends more, twists more and pushes harder. What a set of
 designs can do together is the volume that its designs dominate (hypervolume indicator, Zitzler and
 Thiele 1998, https://doi.org/10.1007/BFb0056872), from a design that does nothing. The ratio of two
-such volumes does not depend on the units.
+such volumes does not depend on the units. Since a larger set reaches further by its size alone,
+equally many designs of either kind are drawn, again and again; whether their ratio could be one of
+chance tells a permutation test (Good, *Permutation, Parametric and Bootstrap Tests of Hypotheses*,
+Springer 2005, chapter 3), whose draws are of both kinds mixed.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pagd.errors import InputError, Status
+from pagd.errors import Status
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -31,60 +34,77 @@ OBJECTIVES: Final[Mapping[str, str]] = {
     "blocked_force_N": "blocked force",
 }
 
+# To either side is as good.
+_EITHER_SIDE: Final = ("twist_deg",)
 # What ended so is an equilibrium that the actuator comes to.
-_REACHED: Final = (Status.ok.value, Status.bending_limit.value)
+_REACHED: Final = (Status.ok.value, Status.bending_limit.value, Status.no_actuation.value)
 # The middle 95 %.
 _INTERVAL: Final = (2.5, 97.5)
+# Designs of a draw, as a share of the rarer kind: draws from so many are nearly independent.
+_SHARE: Final = 1 / 3
+# Draws that the test statistic is the median of.
+_DRAWS: Final = 25
 
 
 def compare(
-    training: pd.DataFrame, generated: pd.DataFrame, seed: int, repeats: int = 1000
+    training: pd.DataFrame, generated: pd.DataFrame, seed: int, repeats: int = 400
 ) -> dict[str, Any]:
     """Compare what training and generated designs can do, by all objectives and by each two.
+
+    A design that does not come to its end counts as one that does nothing. An objective that no
+    design of a kind has is left out.
 
     Parameters
     ----------
     training, generated
         Rows with the columns :data:`pagd.tables.PERFORMANCE` of one fidelity.
     seed
-        Of the draws that give the intervals.
+        Of all draws.
     repeats
-        How many there are: as many designs of either kind as there are of the rarer one, drawn with
-        replacement.
+        Number of draws, and of permutations.
 
     Returns
     -------
     dict
-        ``training`` and ``generated``, how many could be compared; ``comparisons``, each with
-        ``objectives``, ``ratio`` (the volume of the generated designs by that of the training
-        designs, median of the draws), ``low`` and ``high`` (the middle 95 %), ``likely`` (share of
-        draws with a ratio above 1), ``front`` (the designs of both that none dominates, by kind and
-        mode) and ``front_designs``.
-
-    Raises
-    ------
-    InputError
-        If either has no design to compare.
+        ``training`` and ``generated``, how many there are; ``drawn``, how many of either a draw
+        has; ``comparisons``, each with ``objectives``, ``ratio`` (the volume of the generated
+        designs by that of the training designs, median of the draws), ``low`` and ``high`` (the
+        middle 95 % of the draws), ``p`` (of the permutation test, two-sided), ``share`` (mean share
+        of generated designs in the front of a draw), ``front`` (all designs that none of all
+        dominates, by kind and mode) and ``front_designs``. None are left where there are fewer
+        than two objectives, or a volume of nothing.
     """
-    sets = {"training": reached(training), "generated": reached(generated)}
-    for kind, frame in sets.items():
-        if frame.empty:
-            raise InputError(f"No {kind} design was analysed to its end: there is no front.")
-    random = np.random.default_rng(seed)
-    several = [
-        names for size in range(len(OBJECTIVES), 1, -1) for names in combinations(OBJECTIVES, size)
+    sets = {"training": training, "generated": generated}
+    known = [name for name in OBJECTIVES if all(_has(frame, name) for frame in sets.values())]
+    several = [names for size in range(len(known), 1, -1) for names in combinations(known, size)]
+    drawn = int(min(map(len, sets.values())) * _SHARE)
+    found = [
+        _comparison(sets, names, np.random.default_rng([seed, number]), drawn, repeats)
+        for number, names in enumerate(several)
+        if drawn
     ]
     return {
-        "training": len(sets["training"]),
-        "generated": len(sets["generated"]),
-        "comparisons": [_comparison(sets, names, random, repeats) for names in several],
+        **{kind: len(frame) for kind, frame in sets.items()},
+        "drawn": drawn,
+        "comparisons": [each for each in found if each],
     }
 
 
+def reached(frame: pd.DataFrame) -> pd.DataFrame:
+    """The rows of designs that ended in an equilibrium they come to."""
+    return frame[frame["status"].isin(_REACHED)].reset_index(drop=True)
+
+
 def values_of(frame: pd.DataFrame, names: Sequence[str]) -> FloatArray:
-    """The sizes (n, m) of objectives, whatever their sign; no force counts as none."""
+    """What designs reach by objectives (n, m), at least 0; twist to either side.
+
+    0 for what is not known, and of designs that did not come to their end.
+    """
     values = frame[list(names)].apply(pd.to_numeric, errors="coerce").to_numpy(dtype=np.float64)
-    return np.asarray(np.nan_to_num(np.abs(values)), dtype=np.float64)
+    either = np.isin(list(names), _EITHER_SIDE)
+    sizes = np.where(either, np.abs(values), np.maximum(values, 0.0))
+    ended = frame["status"].isin(_REACHED).to_numpy()
+    return np.asarray(np.nan_to_num(sizes) * ended[:, None], dtype=np.float64)
 
 
 def not_dominated(values: FloatArray) -> BoolArray:
@@ -94,28 +114,31 @@ def not_dominated(values: FloatArray) -> BoolArray:
     return np.asarray(is_nondominated(values, maximise=True), dtype=np.bool_)
 
 
-def reached(frame: pd.DataFrame) -> pd.DataFrame:
-    """The rows of designs that ended in an equilibrium they come to: to be compared."""
-    return frame[frame["status"].isin(_REACHED)].reset_index(drop=True)
+def _has(frame: pd.DataFrame, name: str) -> bool:
+    return bool(pd.to_numeric(frame[name], errors="coerce").notna().any())
 
 
 def _comparison(
     sets: Mapping[str, pd.DataFrame],
     names: Sequence[str],
     random: np.random.Generator,
+    drawn: int,
     repeats: int,
-) -> dict[str, Any]:
-    values = {kind: values_of(frame, names) for kind, frame in sets.items()}
-    ratios = _ratios(values["generated"], values["training"], random, repeats)
-    low, ratio, high = np.percentile(ratios, [_INTERVAL[0], 50.0, _INTERVAL[1]])
+) -> dict[str, Any] | None:
+    old, new = (values_of(sets[kind], names) for kind in ("training", "generated"))
+    logs = np.array([_log_ratio(*_draw(old, new, drawn, random)) for _ in range(repeats)])
+    if not np.isfinite(logs).all():
+        return None
+    low, ratio, high = np.exp(np.percentile(logs, [_INTERVAL[0], 50.0, _INTERVAL[1]]))
     both = pd.concat([frame.assign(kind=kind) for kind, frame in sets.items()])
-    front = both[not_dominated(np.vstack([values[kind] for kind in sets]))]
+    front = both[not_dominated(np.vstack([old, new]))]
     return {
         "objectives": list(names),
         "ratio": float(ratio),
         "low": float(low),
         "high": float(high),
-        "likely": float(np.mean(ratios > 1.0)),
+        "p": _chance(old, new, float(np.median(logs)), drawn, random, repeats),
+        "share": float(np.mean([_share(*_draw(old, new, drawn, random)) for _ in range(repeats)])),
         "front": {
             kind: dict(Counter(front.loc[front["kind"] == kind, "mode"].astype(str)))
             for kind in sets
@@ -124,19 +147,45 @@ def _comparison(
     }
 
 
-def _ratios(
-    generated: FloatArray, training: FloatArray, random: np.random.Generator, repeats: int
-) -> FloatArray:
-    """Ratios (r,) of the dominated volumes of equally many designs drawn with replacement."""
-    count = min(len(generated), len(training))
-    drawn = (
-        [values[random.integers(len(values), size=count)] for values in (generated, training)]
-        for _ in range(repeats)
-    )
-    return np.array([_volume(new) / max(_volume(old), np.finfo(float).tiny) for new, old in drawn])
+def _draw(
+    old: FloatArray, new: FloatArray, count: int, random: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """So many rows of either, none twice."""
+    rows = [random.choice(len(values), size=count, replace=False) for values in (old, new)]
+    return old[rows[0]], new[rows[1]]
+
+
+def _chance(
+    old: FloatArray,
+    new: FloatArray,
+    found: float,
+    drawn: int,
+    random: np.random.Generator,
+    repeats: int,
+) -> float:
+    """How often labels given at random lead as far from no difference as ``found``."""
+    pool = np.vstack([old, new])
+    farther = 0
+    for _ in range(repeats):
+        mixed = pool[random.permutation(len(pool))]
+        parts = mixed[: len(old)], mixed[len(old) :]
+        logs = [_log_ratio(*_draw(*parts, drawn, random)) for _ in range(_DRAWS)]
+        farther += not abs(float(np.median(logs))) < abs(found)
+    return (1 + farther) / (1 + repeats)
+
+
+def _log_ratio(old: FloatArray, new: FloatArray) -> float:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.log(_volume(new)) - np.log(_volume(old)))
 
 
 def _volume(values: FloatArray) -> float:
     from moocore import hypervolume
 
     return float(hypervolume(values, ref=np.zeros(values.shape[1]), maximise=True))
+
+
+def _share(old: FloatArray, new: FloatArray) -> float:
+    """The share of the new designs in the front of both."""
+    front = not_dominated(np.vstack([old, new]))
+    return float(front[len(old) :].sum() / front.sum())

@@ -23,12 +23,13 @@ from pagd.mesh.msh import read_msh
 from pagd.stages import geometry, mesh, repair
 from pagd.stages.mesh import mesh_file
 from pagd.stages.solve import materials_of
+from performance.memory import Memory, memory_table
 from performance.options import example_designs
 from performance.page import table, wrapped
 
 Int32Array = NDArray[np.int32]
 
-__all__ = ["Bounds", "CountingSolver", "Rates", "machine_rates", "measured", "text_of"]
+__all__ = ["Bounds", "CountingSolver", "Rates", "body_of", "machine_rates", "measured", "text_of"]
 
 # Far beyond every cache: rows of the dense matrices, and numbers that are copied.
 _MATRIX_ROWS, _COPIED = 2400, 30_000_000
@@ -108,7 +109,7 @@ def measured(name: str, pressure_kPa: float, repeats: int) -> Bounds:
     InputError
         If it cannot be meshed, or does not come so far.
     """
-    body = _body(name)
+    body = body_of(name)
     assembly, solver = body.assembly(), CountingSolver()
     newton = Newton(assembly, solver, 3 * body.nodes, _SETTINGS, body.pressure)
     path = Continuation(newton)
@@ -132,7 +133,12 @@ def measured(name: str, pressure_kPa: float, repeats: int) -> Bounds:
     )
 
 
-def text_of(rates: Rates, found: Mapping[str, Bounds], pressure_kPa: float) -> str:
+def text_of(
+    rates: Rates,
+    found: Mapping[str, Bounds],
+    memory: Mapping[str, Memory],
+    pressure_kPa: float,
+) -> str:
     """Return the section without its first lines."""
     introduction = (
         f"One iteration of the free actuator at {pressure_kPa:g} kPa, one thread. One core "
@@ -142,7 +148,18 @@ def text_of(rates: Rates, found: Mapping[str, Bounds], pressure_kPa: float) -> s
         "factors, forth and back, at the other."
     )
     rows = [[what, *(show(one, rates) for one in found.values())] for what, show in _ROWS]
-    return f"{wrapped(introduction)}\n\n{table(['', *found], rows)}"
+    held = (
+        "What the process of an analysis holds in memory after its first factorisation, each row "
+        "with those above it:"
+    )
+    return "\n\n".join(
+        [
+            wrapped(introduction),
+            table(["", *found], rows),
+            wrapped(held),
+            memory_table(memory),
+        ]
+    )
 
 
 def _read_s(one: Bounds, rates: Rates) -> float:
@@ -174,7 +191,14 @@ _ROWS: tuple[_Row, ...] = (
 )
 
 
-def _body(name: str) -> Body:
+def body_of(name: str) -> Body:
+    """A design of Table 2 on its usual mesh.
+
+    Raises
+    ------
+    InputError
+        If it cannot be meshed.
+    """
     config = configuration.load("{}")
     named = example_designs()[name]
     with tempfile.TemporaryDirectory(prefix="pagd-bounds-") as folder:

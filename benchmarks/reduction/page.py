@@ -179,7 +179,7 @@ def _gate(pairs: Sequence[Pair]) -> str:
     last = {name: _trusted(by[name, CELLS], by[name, PIECES]) for name in names}
     seconds = np.array([s for _, s in last.values()])
     reduced = [pair for pair, _ in last.values() if pair is not None]
-    told = _errors(reduced, len(names))
+    told = _errors(reduced, len(names), exact=len(names) - len(reduced))
     counts = Counter("full" if pair is None else pair.fidelity for pair, _ in last.values())
     share = ", ".join(f"{counts[k]} {k}" for k in (CELLS, PIECES, "full"))
     rows.append([f"gated: {share}", *told[:-1], f"{np.median(seconds):.2f} / {seconds.mean():.2f}"])
@@ -196,21 +196,22 @@ def _trusted(cells: Pair, pieces: Pair) -> tuple[Pair | None, float]:
     return None, cells.cpu_s + pieces.cpu_s + pieces.cpu_full_s
 
 
-def _errors(pairs: Sequence[Pair], count: int) -> list[str]:
+def _errors(pairs: Sequence[Pair], count: int, exact: int = 0) -> list[str]:
+    """Errors of some of ``count`` designs, and of ``exact`` ones that have none."""
     if not pairs:
         return [f"0 of {count}", "–", "–", "–"]
     last = _last(pairs)
     seconds = np.array([pair.cpu_s for pair in pairs])
     return [
-        f"{len(pairs)} of {count}",
-        _three(last["tip_error"]),
-        _three(_force_errors(last)),
+        f"{len(pairs) + exact} of {count}",
+        _three(last["tip_error"], exact),
+        _three(_force_errors(last), exact),
         f"{np.median(seconds):.2f} / {seconds.mean():.2f}",
     ]
 
 
-def _three(values: pd.Series) -> str:
-    known = values.dropna().to_numpy(float)
+def _three(values: pd.Series, exact: int) -> str:
+    known = np.concatenate([values.dropna().to_numpy(float), np.zeros(exact)])
     if not len(known):
         return "–"
     three = np.median(known), np.percentile(known, 90), known.max()

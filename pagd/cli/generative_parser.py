@@ -131,7 +131,7 @@ def _add_screen(commands: Any) -> None:
         type=_part,
         default=(1, 1),
         metavar="K/N",
-        help="only every N-th design from the K-th on: N jobs share a table (default: 1/1)",
+        help="only the K-th of N parts that N jobs share, each a sample of all (default: 1/1)",
     )
     add_materials(command)
     _add_set_options(command)

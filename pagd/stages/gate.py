@@ -7,6 +7,7 @@ periodic. Neither knows its error; but where errors were large beside full analy
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any, Final
 
 from pagd.catalogue import NamedDesign
 from pagd.design import Design
-from pagd.errors import Status
+from pagd.errors import StageFailure, Status
 from pagd.record import Record
 from pagd.stages import geometry, mesh, metrics, repair, solve
 from pagd.stages.reduced import Reduced, analyse
@@ -23,7 +24,22 @@ from pagd.stages.solve import Materials
 from pagd.summary import GATHERED, performance_row
 from pagd.tables import read_table
 
-__all__ = ["doubt_of", "full_analysis", "gated"]
+log = logging.getLogger(__name__)
+
+#: Faults of an analysis that are one design's, not the end of all.
+FAULTS: Final = (
+    ArithmeticError,
+    AssertionError,
+    LookupError,
+    MemoryError,
+    OSError,
+    RuntimeError,
+    StageFailure,
+    TypeError,
+    ValueError,
+)
+
+__all__ = ["FAULTS", "doubt_of", "full_analysis", "gated"]
 
 # With fewer chambers the ends are too much of a row for cells alone.
 _FEW: Final = 6
@@ -34,7 +50,7 @@ _REACHED: Final = (Status.ok.value, Status.bending_limit.value, Status.no_actuat
 _FINAL: Final = (Status.invalid_geometry.value,)
 
 
-def doubt_of(row: Mapping[str, Any], design: Design) -> str | None:
+def doubt_of(row: Mapping[str, Any], design: Design, held: str = "edge") -> str | None:
     """Why the reduced result of a design is not to be trusted; none where it is.
 
     Parameters
@@ -43,10 +59,14 @@ def doubt_of(row: Mapping[str, Any], design: Design) -> str | None:
         Its row of the table of performance, of cells alone or with pieces.
     design
         The design.
+    held
+        What holds the tip, ``solve.blocked_force`` of the configuration.
     """
     status = row["status"]
     if status in _FINAL:
         return None
+    if held == "plate":
+        return "Parts of a row meet no plate: they have no such blocked force."
     if status not in _REACHED:
         return f"The reduced analysis ends as {status}."
     if row["fidelity"] == "cells" and design.N < _FEW:
@@ -65,20 +85,36 @@ def doubt_of(row: Mapping[str, Any], design: Design) -> str | None:
 def gated(named: NamedDesign, config: Mapping[str, Any], materials: Materials) -> Reduced:
     """The simplest analysis of a design that is trusted: cells, with pieces, or in full.
 
-    ``doubt`` in its row tells why the one before was not; the times are of all that were run.
-
     Parameters
     ----------
     named, config, materials
         As of :func:`pagd.stages.reduced.analyse`.
+
+    Returns
+    -------
+    Reduced
+        ``doubt`` in its row tells why the simpler one before was not trusted; the times are of all
+        that were run. Where a better analysis has a fault, it is the one before, with its doubt.
+
+    Raises
+    ------
+    InputError
+        Where the configuration, or what is installed, does not allow an analysis.
     """
+    held = config["solve"]["blocked_force"]
     found = analyse(named, config, materials, pieces=False)
     for better in (partial(analyse, pieces=True), full_analysis):
-        doubt = doubt_of(found.row, named.design)
+        doubt = doubt_of(found.row, named.design, held)
         if doubt is None:
             break
-        before, found = found.row, better(named, config, materials)
-        times = {key: round(before[key] + found.row[key], 4) for key in ("cpu_s", "wall_s")}
+        before = found
+        try:
+            found = better(named, config, materials)
+        except FAULTS as fault:
+            log.warning("%s: a fault of the better analysis (%r)", named.name, fault)
+            found.row["doubt"] = doubt
+            break
+        times = {k: round(before.row[k] + found.row[k], 4) for k in ("cpu_s", "wall_s")}
         found.row.update(doubt=doubt, **times)
     return found
 
@@ -94,6 +130,11 @@ def full_analysis(named: NamedDesign, config: Mapping[str, Any], materials: Mate
         Completed configuration.
     materials
         Elastomer and paper.
+
+    Raises
+    ------
+    InputError
+        Where something that a stage needs is not installed.
     """
     with TemporaryDirectory(prefix="pagd-") as folder:
         out = Path(folder)

@@ -231,8 +231,11 @@ def _force_row(
     pressure_kPa: FloatArray, forces: FloatArray, actuation: Actuation
 ) -> dict[str, Any]:
     known = np.flatnonzero(np.isfinite(forces[1:])) + 1
-    if actuation.blocked_force != "edge" or len(known) == 0:
+    if actuation.blocked_force != "edge" or len(forces) < 2:
         return {"blocked_force_N": None}
+    if len(known) == 0:
+        status = Status.not_converged.value
+        return {"blocked_force_N": None, "blocked_force_status": status}
     last = int(known[-1])
     status = Status.ok if last == len(forces) - 1 else Status.not_converged
     return {

@@ -19,18 +19,29 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pagd import __version__
 from pagd.catalogue import NamedDesign
-from pagd.config import part
-from pagd.errors import InputError, PagdError, Status
+from pagd.config import part, refusal_of_cells
+from pagd.errors import InputError, Status
 from pagd.files import replaced_folder, write_text
 from pagd.record import Meter, Record, read_record
 from pagd.stages import STAGE_VERSIONS
-from pagd.stages.gate import doubt_of, gated
+from pagd.stages.gate import FAULTS, doubt_of, gated
 from pagd.stages.reduced import CELLS, PIECES, Reduced, analyse
 from pagd.stages.solve import Materials
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
-from pagd.tables import CHAMBERS, MEASURES, PERFORMANCE, TRAJECTORY, Column, concatenate, write_rows
+from pagd.tables import (
+    CHAMBERS,
+    MEASURES,
+    PERFORMANCE,
+    TRAJECTORY,
+    Column,
+    concatenate,
+    read_table,
+    write_rows,
+)
 from pagd.tables import write_table as write_columns
 
 __all__ = ["FIDELITIES", "TABLES", "gather", "run"]
@@ -50,8 +61,11 @@ TABLES: dict[str, tuple[Column, ...]] = {
 # Designs of a batch: some ten seconds of work are what an end without warning costs.
 _BATCH = 10
 _KEY_NAME = "key.json"
-# The stages whose meaning is that of a screening too.
+# Part of the meaning of parts, not a draw of the science.
+_SEED_OF_PARTS = 0
+# The stages whose meaning is that of a screening too, and those of full analyses.
 _OF_STAGES = ("screening", "mesh", "solve", "metrics")
+_OF_FULL_ANALYSES = ("geometry", "repair")
 _LIBRARIES = ("numba", "numpy", "pypardiso", "scipy")
 # Seconds between two lines that tell how far it is.
 _TELL = 10.0
@@ -96,25 +110,28 @@ def run(
     processes
         How many at once; each has one thread.
     part_of
-        (k, n): only the designs k, k + n, k + 2 n and so on, counted from 1, so that n jobs share
-        the work and each part is spread over all designs as any other is.
+        (k, n): the k-th of n parts that share the work, k from 1. Each is a random sample of all
+        designs, always the same one, in their order.
 
     Raises
     ------
     InputError
         If the configuration rules cells out.
     """
-    _refuse_what_cells_cannot(config["solve"])
-    first, parts = part_of
-    mine = list(designs)[first - 1 :: parts]
+    refused = refusal_of_cells(config["solve"])
+    if refused is not None:
+        raise InputError(refused)
+    mine = _part_of(designs, *part_of)
+    in_full = _OF_FULL_ANALYSES if fidelity == GATED else ()
     made_of = {
         **part(config, "screening"),
+        **{key: value for stage in in_full for key, value in part(config, stage).items()},
         "material": asdict(materials.elastomer),
         "paper": asdict(materials.paper),
         "fidelity": fidelity,
     }
     kept = out.with_name(f".{out.name}.batches")
-    batches = list(_batches(mine, kept, made_of))
+    batches = list(_batches(mine, kept, made_of, (*_OF_STAGES, *in_full)))
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         left = [batch for batch in batches if not _is_done(batch)]
@@ -137,6 +154,14 @@ def run(
     return record
 
 
+def _part_of(designs: Sequence[NamedDesign], number: int, parts: int) -> list[NamedDesign]:
+    if parts == 1:
+        return list(designs)
+    # Every n-th design would not do: a table may have an order, as a Sobol sequence has.
+    order = np.random.default_rng(_SEED_OF_PARTS).permutation(len(designs))
+    return [designs[k] for k in sorted(order[number - 1 :: parts])]
+
+
 def gather(parts: Sequence[Path], out: Path) -> Record:
     """Put the tables of several screenings into one folder, in their order.
 
@@ -150,7 +175,8 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
     Raises
     ------
     InputError
-        If a folder is no screening, or they were not made with the same configuration.
+        If a folder is no screening, they were not made with the same configuration, or a design is
+        in two of them.
     """
     records = [read_record(part) for part in parts]
     made_of = records[0].configuration if records else {}
@@ -159,6 +185,13 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
             raise InputError(f"{one}: a folder of the stage {record.stage}, not of a screening.")
         if record.configuration != made_of:
             raise InputError(f"{one}: screened with another configuration than {parts[0]}.")
+
+    names = Counter(
+        str(name) for one in parts for name in read_table(one / "performance.parquet")["design_id"]
+    )
+    twice = next((name for name, count in names.items() if count > 1), None)
+    if twice is not None:
+        raise InputError(f"Design {twice} is in more than one of the parts {parts[0]} and so on.")
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         for name, columns in TABLES.items():
@@ -175,32 +208,22 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
     )
 
 
-def _refuse_what_cells_cannot(solve: Mapping[str, Any]) -> None:
-    if any(solve["gravity_m_s2"]):
-        raise InputError(
-            f"solve.gravity_m_s2 = {list(solve['gravity_m_s2'])}: must be 0 to screen designs by "
-            "their cells, which are not alike under gravity."
-        )
-    if solve["element"] not in ("auto", "hexahedron"):
-        raise InputError(
-            f"solve.element = {solve['element']!r}: must be auto or hexahedron to screen designs "
-            "by their cells."
-        )
-
-
 def _discard(kept: Path) -> None:
     shutil.rmtree(kept, ignore_errors=True)
 
 
 def _batches(
-    designs: Sequence[NamedDesign], kept: Path, made_of: Mapping[str, Any]
+    designs: Sequence[NamedDesign],
+    kept: Path,
+    made_of: Mapping[str, Any],
+    stages: Sequence[str],
 ) -> Iterator[_Batch]:
     for start in range(0, len(designs), _BATCH):
         some = list(designs[start : start + _BATCH])
         content = {
             "designs": [named.as_json() for named in some],
             "made_of": made_of,
-            "versions": [__version__, *(STAGE_VERSIONS[stage] for stage in _OF_STAGES)],
+            "versions": [__version__, *(STAGE_VERSIONS[stage] for stage in stages)],
         }
         text = json.dumps(content, sort_keys=True, default=str)
         key = hashlib.sha256(text.encode()).hexdigest()
@@ -296,9 +319,11 @@ def _safely(
         if fidelity == GATED:
             return gated(named, config, materials)
         found = analyse(named, config, materials, pieces=fidelity == PIECES)
-        found.row["doubt"] = doubt_of(found.row, named.design)
+        held = config["solve"]["blocked_force"]
+        found.row["doubt"] = doubt_of(found.row, named.design, held)
         return found
-    except (PagdError, ArithmeticError, AssertionError, LookupError, ValueError) as error:
+    except FAULTS as error:
+        told = f"A fault of the analysis: {type(error).__name__}: {error}"
         row = {
             "design_id": named.name,
             "name": named.name,
@@ -306,7 +331,8 @@ def _safely(
             "mode": named.design.mode,
             "fidelity": CELLS if fidelity == GATED else fidelity,
             "status": Status.not_converged.value,
-            "reason": f"A fault of the analysis: {type(error).__name__}: {error}",
+            "reason": told,
+            "doubt": told,
         }
         return Reduced(row, {}, {}, {})
 
@@ -326,8 +352,6 @@ def _stacked(tables: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
 
 
 def _figures(folder: Path) -> dict[str, Any]:
-    from pagd.tables import read_table
-
     table = read_table(folder / "performance.parquet")
     seconds = table["cpu_s"].astype(float)
     statuses = Counter(str(status) for status in table["status"])
@@ -345,6 +369,5 @@ def _figures(folder: Path) -> dict[str, Any]:
 
 
 def _median(values: Any) -> float:
-    import numpy as np
-
-    return float(np.nanmedian(values)) if len(values) else 0.0
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else 0.0

@@ -6,11 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pagd.errors import InputError
 from pagd.fronts import compare, not_dominated, values_of
 
+ALL = ["bending_deg", "twist_deg", "blocked_force_N"]
 
-def table(rows: list[tuple[float, float, float | None]], status: str = "ok") -> pd.DataFrame:
+
+def table(rows: list[tuple[float, ...]] | np.ndarray, status: str = "ok") -> pd.DataFrame:
     return pd.DataFrame(
         [
             {
@@ -26,48 +27,75 @@ def table(rows: list[tuple[float, float, float | None]], status: str = "ok") -> 
     )
 
 
+def random_table(count: int, seed: int, size: float = 1.0) -> pd.DataFrame:
+    return table(size * np.random.default_rng(seed).random((count, 3)))
+
+
 def test_what_none_is_better_than_is_the_front() -> None:
     values = np.array([[3.0, 1.0], [1.0, 3.0], [2.0, 2.0], [1.0, 1.0], [2.0, 1.5]])
     assert not_dominated(values).tolist() == [True, True, True, False, False]
 
 
-def test_sizes_count_whatever_their_sign_and_no_force_is_none() -> None:
-    assert values_of(table([(-3, -2, None)]), ["bending_deg", "twist_deg", "blocked_force_N"]) == (
-        pytest.approx(np.array([[3.0, 2.0, 0.0]]))
-    )
+def test_twist_counts_to_either_side_and_what_goes_the_other_way_is_nothing() -> None:
+    rows = table([(-3, -2, None), (3, 2, -1)])
+    assert values_of(rows, ALL) == pytest.approx(np.array([[0.0, 2.0, 0.0], [3.0, 2.0, 0.0]]))
+    assert not values_of(rows.assign(status="not_converged"), ALL).any()
 
 
-def test_one_design_against_one_has_the_ratio_of_their_boxes() -> None:
-    found = compare(table([(10, 10, 1)]), table([(20, -10, 2)]), seed=1, repeats=5)
+def test_designs_that_are_all_alike_have_the_ratio_of_their_boxes() -> None:
+    found = compare(table([(10, 10, 1)] * 9), table([(20, -10, 2)] * 6), seed=1, repeats=19)
     by = {tuple(each["objectives"]): each for each in found["comparisons"]}
-    whole = by["bending_deg", "twist_deg", "blocked_force_N"]
+    whole = by[tuple(ALL)]
     assert whole["ratio"] == whole["low"] == whole["high"] == pytest.approx(4.0)
     assert by["bending_deg", "twist_deg"]["ratio"] == pytest.approx(2.0)
-    assert whole["likely"] == 1.0
-    assert whole["front"] == {"training": {}, "generated": {"mixed": 1}}
-    assert len(by) == 4
+    assert whole["share"] == 1.0
+    assert whole["front"]["training"] == {}
+    assert set(whole["front"]["generated"]) == {"mixed"}
+    assert (len(by), found["drawn"]) == (4, 2)
 
 
-def test_sets_alike_are_told_to_be_alike() -> None:
-    random = np.random.default_rng(0)
+@pytest.mark.parametrize("sizes", [(500, 1000), (1500, 150)])
+def test_a_larger_set_is_no_better_for_its_size(sizes: tuple[int, int]) -> None:
+    chances, ratios, shares = [], [], []
+    for seed in range(12):
+        old, new = (random_table(n, 2 * seed + k) for k, n in enumerate(sizes))
+        found = compare(old, new, seed=seed, repeats=39)
+        whole = found["comparisons"][0]
+        chances.append(whole["p"])
+        ratios.append(whole["ratio"])
+        shares.append(whole["share"])
+    assert sum(p <= 0.05 for p in chances) <= 3
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.06)
+    assert np.mean(shares) == pytest.approx(0.5, abs=0.05)
 
-    def drawn() -> pd.DataFrame:
-        return table([tuple(row) for row in random.random((300, 3))])
 
-    whole = compare(drawn(), drawn(), seed=2, repeats=200)["comparisons"][0]
-    assert whole["low"] < 1 < whole["high"]
-    assert 0.9 < whole["ratio"] < 1.1
+def test_what_is_better_is_told_to_be() -> None:
+    whole = compare(random_table(300, 1), random_table(300, 2, 1.2), seed=1, repeats=99)
+    first = whole["comparisons"][0]
+    assert first["p"] <= 0.02
+    assert first["ratio"] == pytest.approx(1.2**3, rel=0.1)
 
 
-def test_what_did_not_come_to_its_end_does_not_count() -> None:
-    good, lost = table([(1, 1, 1)]), table([(100, 100, 100)], status="not_converged")
-    found = compare(good, pd.concat([good, lost]), seed=1, repeats=3)
-    assert found["generated"] == 1
-    with pytest.raises(InputError, match="No generated design"):
-        compare(good, lost, seed=1)
+def test_designs_that_fail_are_designs_that_do_nothing() -> None:
+    good, lost = random_table(100, 1), random_table(100, 2).assign(status="not_converged")
+    found = compare(good, pd.concat([good.head(10), lost.head(90)]), seed=1, repeats=99)
+    assert found["generated"] == 100
+    assert found["comparisons"][0]["ratio"] < 0.9
+    assert found["comparisons"][0]["p"] <= 0.05
+
+
+def test_objectives_that_nobody_has_are_left_out() -> None:
+    free = random_table(30, 1).assign(blocked_force_N=None)
+    found = compare(free, random_table(30, 2), seed=1, repeats=9)
+    assert [each["objectives"] for each in found["comparisons"]] == [ALL[:2]]
+
+
+@pytest.mark.parametrize("lost", [random_table(0, 1), random_table(9, 1, 0.0)])
+def test_of_nothing_there_is_no_comparison(lost: pd.DataFrame) -> None:
+    lost = lost.reindex(columns=["design_id", "mode", "status", *ALL])
+    assert compare(lost, random_table(9, 2), seed=1, repeats=9)["comparisons"] == []
 
 
 def test_the_same_seed_gives_the_same_interval() -> None:
-    random = np.random.default_rng(3)
-    a, b = (table([tuple(row) for row in random.random((50, 3))]) for _ in range(2))
+    a, b = random_table(50, 5), random_table(50, 6)
     assert compare(a, b, seed=4, repeats=20) == compare(a, b, seed=4, repeats=20)

@@ -314,10 +314,11 @@ SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
 FRONTS = {
     "training": 480,
     "generated": 1000,
+    "drawn": 160,
     "comparisons": [
         {
             "objectives": ["bending_deg", "twist_deg", "blocked_force_N"],
-            **{"ratio": 1.23, "low": 1.04, "high": 1.45, "likely": 0.99},
+            **{"ratio": 1.23, "low": 1.04, "high": 1.45, "p": 0.0125, "share": 0.68},
             "front": {"training": {"bending": 3}, "generated": {"mixed": 5, "twisting": 2}},
             "front_designs": [],
         }
@@ -367,12 +368,17 @@ def study(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "words"),
-    [(1.1, 1.3, "do more"), (0.7, 0.9, "do less"), (0.9, 1.1, "no difference is certain")],
+    ("ratio", "p", "words"),
+    [
+        (1.2, 0.01, "generated designs do more: 20 % more in volume"),
+        (0.8, 0.01, "generated designs do less: 20 % less in volume"),
+        (0.8, 0.2, "no difference is certain: 20 % less in volume"),
+    ],
 )
-def test_the_answer_is_as_sure_as_the_interval(low, high, words):
-    whole = FRONTS["comparisons"][0] | {"low": low, "high": high}
-    assert words in answer_of({"comparisons": [whole]})
+def test_the_answer_is_as_sure_as_the_test(ratio, p, words):
+    whole = FRONTS["comparisons"][0] | {"ratio": ratio, "p": p}
+    assert words in answer_of(FRONTS | {"comparisons": [whole]})
+    assert "Too few" in answer_of(FRONTS | {"comparisons": []})
 
 
 PICTURES_TOGETHER = ("gallery", "trajectories", "angles", "forces")
@@ -411,8 +417,8 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "<dt>simulated designs</dt><dd>7</dd>",
         "<dd>2 invalid, 1 copy of a training design, 3 duplicates</dd>",
         "<dd>990 ok, 10 bending limit</dd>",
-        "generated designs do more: by 23 % (4 to 45 %) in volume. Of the 10 designs that none"
-        " exceeds, 7 are generated.",
+        "By bending, twist, blocked force at once, generated designs do more: 23 % more in volume,"
+        " 160 designs of either kind, p = 0.013. Of their common front 68 % are generated.",
     ):
         assert fact in text
     assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"

@@ -13,7 +13,7 @@ from reduced_samples import SLANTED, STRAIGHT
 from pagd.cli import main
 from pagd.errors import InputError
 from pagd.record import read_record
-from pagd.stages import gate, screening
+from pagd.stages import gate, reduced, screening
 from pagd.tables import read_rows
 
 CONFIG = json.dumps(
@@ -134,9 +134,13 @@ def test_parts_share_a_table_and_are_gathered(table: Path, tmp_path: Path) -> No
     parts = [tmp_path / f"part{k}" for k in (1, 2)]
     for number, part in enumerate(parts, 1):
         assert screened(table, part, "--part", f"{number}/2") == 0
-    assert [names_in(part) for part in parts] == [["straight", "flat"], ["slanted"]]
+    shared = [names_in(part) for part in parts]
+    assert sorted(map(len, shared)) == [1, 2]
     record = screening.gather(parts, tmp_path / "all")
-    assert names_in(tmp_path / "all") == ["straight", "flat", "slanted"]
+    assert names_in(tmp_path / "all") == [*shared[0], *shared[1]]
+    assert set(names_in(tmp_path / "all")) == {"straight", "slanted", "flat"}
+    with pytest.raises(InputError, match="in more than one"):
+        screening.gather([parts[0], *parts], tmp_path / "twice")
     assert record.figures["statuses"] == {"invalid_geometry": 1, "ok": 2}
     assert record.configuration == read_record(parts[0]).configuration
     trajectories = read_rows(tmp_path / "all" / "trajectories.parquet")
@@ -183,9 +187,7 @@ def test_a_design_that_pieces_cannot_is_run_in_full(
     table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = "Too far from anything."
-    monkeypatch.setattr(
-        gate, "doubt_of", lambda row, design: told if row["status"] == "ok" else None
-    )
+    monkeypatch.setattr(gate, "doubt_of", lambda row, *_: told if row["status"] == "ok" else None)
     assert screened(table, tmp_path / "out", "--fidelity", "gated") == 0
     rows = {row["design_id"]: row for row in read_rows(tmp_path / "out" / "performance.parquet")}
     assert rows["straight"]["fidelity"] == rows["slanted"]["fidelity"] == "full"
@@ -206,6 +208,7 @@ def test_a_design_that_pieces_cannot_is_run_in_full(
         ({"first_contact_pressure_kPa": 31.25}, "touch from 31.2 kPa"),
         ({"first_contact_pressure_kPa": 31.25, "fidelity": "pieces"}, None),
         ({"blocked_force_status": "not_converged"}, "No blocked force"),
+        ({"blocked_force_status": "not_converged", "blocked_force_N": None}, "No blocked force"),
         ({"bending_deg": 160.0}, "bends by 160°"),
         ({"bending_deg": 160.0, "blocked_force_N": None, "blocked_force_status": None}, None),
     ],
@@ -221,3 +224,56 @@ def test_what_makes_a_result_doubtful(changed: dict[str, object], words: str | N
     }
     told = gate.doubt_of(row | changed, SLANTED if SLANTED.N >= 6 else replace(SLANTED, N=8))
     assert (told is None) if words is None else (told is not None and words in told)
+
+
+def test_parts_of_a_plate_are_doubted() -> None:
+    row = {"status": "ok", "fidelity": "pieces"}
+    assert "no plate" in str(gate.doubt_of(row, SLANTED, "plate"))
+    assert gate.doubt_of(row, SLANTED, "none") is None
+
+
+def test_a_fault_of_the_better_analysis_leaves_the_simpler_one(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise RuntimeError("no such thing")
+
+    monkeypatch.setattr(
+        gate, "doubt_of", lambda row, *_: "Never." if row["status"] == "ok" else None
+    )
+    monkeypatch.setattr(gate, "full_analysis", broken)
+    assert screened(table, tmp_path / "out", "--fidelity", "gated") == 0
+    rows = {row["design_id"]: row for row in read_rows(tmp_path / "out" / "performance.parquet")}
+    assert (rows["straight"]["fidelity"], rows["straight"]["doubt"]) == ("pieces", "Never.")
+    assert rows["straight"]["bending_deg"] > 1
+
+
+def test_a_fault_of_a_design_is_told_and_the_others_go_on(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise RuntimeError("no such thing")
+
+    monkeypatch.setattr(screening, "analyse", broken)
+    assert screened(table, tmp_path / "out") == 0
+    rows = read_rows(tmp_path / "out" / "performance.parquet")
+    assert {row["status"] for row in rows} == {"not_converged"}
+    assert all("RuntimeError: no such thing" in row["doubt"] for row in rows)
+    assert read_record(tmp_path / "out").figures["cpu_s_median"] == 0.0
+
+
+def test_forces_that_none_were_found_of_are_told(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        reduced, "blocked_forces", lambda row, *_: np.full(len(row.pressure_kPa), np.nan)
+    )
+    assert screened(table, tmp_path / "out") == 0
+    row = read_rows(tmp_path / "out" / "performance.parquet")[0]
+    assert (row["blocked_force_N"], row["blocked_force_status"]) == (None, "not_converged")
+    assert row["doubt"] is not None
+
+
+def test_gated_batches_are_those_of_their_full_analyses_too(table: Path, tmp_path: Path) -> None:
+    assert screened(table, tmp_path / "out", "--fidelity", "gated") == 0
+    assert {"geometry", "repair", "solve"} <= set(read_record(tmp_path / "out").configuration)

@@ -132,7 +132,10 @@ def test_more_training_designs_leave_the_parts_that_are_there(generative: Projec
     answer = generative.snakemake("--dry-run", "--config", more, "--", "screening")
     # One job more, and what is made of all.
     assert jobs(answer)["screen_part"] == 1
-    assert {"screened", "fronts", "pictures_screened"} <= set(jobs(answer))
+    assert {"screened", "fronts"} <= set(jobs(answer))
+    none = 'screening={"training_designs": 0, "designs_per_job": 10}'
+    answer = generative.snakemake("--dry-run", "--config", none, "--", "screening")
+    assert (answer.returncode, jobs(answer).get("screen_part")) == (0, None)
     whole = ("--profile", str(ROOT / "profiles" / "screening"))
     planned = jobs(generative.snakemake(*whole, "--dry-run", "--", "screening"))
     assert planned["screen_part"] == 300 // 10 - 1

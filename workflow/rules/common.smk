@@ -17,6 +17,7 @@ from pagd.config import (
     known_tables,
     material_as_json,
     part_as_json,
+    refusal_of_cells,
     retyped,
 )
 from pagd.errors import InputError
@@ -70,13 +71,14 @@ if GENERATIVE:
         "pictures": "results/figures/generative",
     }
 
-# Designs that are analysed by a chamber each, by where their table is; comparing them with none
-# would tell nothing.
-SCREENED = {
+# Designs that are analysed by a chamber each, by where their table is: with no training designs, or
+# where chambers are not alike, none.
+TABLE_SIZES = {
     "generated": CONFIG["generator"]["designs"],
-    "training": CONFIG["screening"]["training_designs"],
+    "training": CONFIG["dataset"]["size"],
 }
-SCREENING = GENERATIVE and SCREENED["training"] > 0
+SCREENED = TABLE_SIZES | {"training": CONFIG["screening"]["training_designs"]}
+SCREENING = GENERATIVE and SCREENED["training"] > 0 and refusal_of_cells(CONFIG["solve"]) is None
 if SCREENING:
     STUDY |= {
         "screened": "results/screening/generated",
@@ -108,14 +110,14 @@ def designs_to_screen(wildcards):
 
 def parts_of_table(wildcards):
     """How many parts of a job each a whole table of designs has."""
-    sizes = {"generated": CONFIG["generator"]["designs"], "training": CONFIG["dataset"]["size"]}
-    return -(-sizes[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
+    return -(-TABLE_SIZES[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
 
 
 def parts_to_screen(wildcards):
-    """The parts that are screened, each spread over the whole table as the others are."""
-    wanted = -(-SCREENED[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
-    numbers = range(1, min(wanted, parts_of_table(wildcards)) + 1)
+    """So many parts that they have the wanted number of designs, each a sample of all."""
+    parts, size = parts_of_table(wildcards), TABLE_SIZES[wildcards.screened]
+    wanted = -(-min(SCREENED[wildcards.screened], size) * parts // size)
+    numbers = range(1, wanted + 1)
     return expand(
         "results/screening/parts/{screened}_{part}", screened=wildcards.screened, part=numbers
     )

@@ -8,9 +8,9 @@ wildcard_constraints:
 
 rule screening:
     input:
-        expand("results/screening/{screened}", screened=SCREENED),
-        "results/summary/fronts.json",
-        "results/figures/screening",
+        of_screening("results/screening/generated"),
+        of_screening("results/screening/training"),
+        of_screening("results/summary/fronts.json"),
 
 
 rule screen_part:

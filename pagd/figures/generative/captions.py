@@ -92,10 +92,10 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "screened": (
         "What generated and training designs can do, by a chamber each: bending and twist of the"
-        " free tip and blocked force at the last pressure reached, whatever their sign.",
+        " free tip, to either side, and blocked force, at the last pressure reached.",
         "Stairs are Pareto fronts: no design of a kind is beyond its own.",
-        "Shown are designs that came to the last pressure, or to the limit of bending:"
-        " {screened} generated and {screened_training} training designs.",
+        "Shown are designs that came to an equilibrium at the last pressure, or to the limit of"
+        " bending: {screened} generated and {screened_training} training designs.",
     ),
     "screened_novelty": (
         "Every screened generated design by its novelty, the distance to the nearest training"

@@ -120,12 +120,13 @@ def screened_novelty_figure(screened: pd.DataFrame, full: pd.DataFrame | None) -
         Designs that were simulated as a whole, if any were.
     """
     figure = new_figure(13.0, 5.0)
-    both = _both(screened, full)
     for axes, name in zip(figure.subplots(1, len(OBJECTIVES)), OBJECTIVES, strict=True):
+        both = _both(screened, full, name)
         values = np.column_stack([screened["novelty"], values_of(screened, [name])])
         _draw_modes(axes, screened, values)
         if len(both):
-            cells, whole = (values_of(both, [name + end])[:, 0] for end in ("", "_full"))
+            whole = values_of(both.assign(**{name: both[f"{name}_full"]}), [name])[:, 0]
+            cells = values_of(both, [name])[:, 0]
             novelty = both["novelty"].to_numpy(dtype=np.float64)
             axes.vlines(novelty, cells, whole, color=INK, linewidth=0.9, zorder=4)
             axes.scatter(novelty, whole, s=34, facecolor="white", edgecolor=INK, zorder=5)
@@ -133,7 +134,7 @@ def screened_novelty_figure(screened: pd.DataFrame, full: pd.DataFrame | None) -
         axes.set(ylabel=_label(name), xlim=(0, None))
         axes.set_title(f"{OBJECTIVES[name]}{_correlation(values)}")
     handles = _mode_handles(screened)
-    if len(both):
+    if full is not None:
         handles.append(
             Line2D(
                 [],
@@ -156,20 +157,22 @@ def screened_beside_full_figure(screened: pd.DataFrame, full: pd.DataFrame | Non
     NothingToDraw
         If no design has both.
     """
-    both = _both(screened, full)
-    if both.empty:
+    pairs = {name: _both(screened, full, name) for name in OBJECTIVES}
+    if all(both.empty for both in pairs.values()):
         raise NothingToDraw("No screened design was simulated as a whole.")
     figure = new_figure(13.0, 4.8)
-    for axes, name in zip(figure.subplots(1, len(OBJECTIVES)), OBJECTIVES, strict=True):
-        values = np.column_stack([values_of(both, [f"{name}_full"]), values_of(both, [name])])
-        largest = 1.05 * max(float(values.max()), 1e-9)
-        axes.plot([0, largest], [0, largest], color=FAINT, linewidth=0.8, zorder=1)
+    for axes, (name, both) in zip(figure.subplots(1, len(pairs)), pairs.items(), strict=True):
+        values = both[[f"{name}_full", name]].to_numpy(dtype=np.float64)
+        ends = np.array([min(values.min(initial=0.0), 0.0), max(values.max(initial=1e-9), 0.0)])
+        ends += 0.05 * (ends[1] - ends[0]) * np.array([-1.0, 1.0])
+        axes.plot(ends, ends, color=FAINT, linewidth=0.8, zorder=1)
         _draw_modes(axes, both, values, size=26.0)
         axes.set(xlabel=f"full analysis, {_UNITS[name]}", ylabel=f"cells, {_UNITS[name]}")
-        axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
+        axes.set(xlim=ends, ylim=ends, aspect="equal")
         axes.set_title(f"{OBJECTIVES[name]}{_median_error(values)}")
+    shown = pairs[max(pairs, key=lambda name: len(pairs[name]))]
     figure.legend(
-        handles=_mode_handles(both), loc="outside lower center", ncols=len(modes_of(both))
+        handles=_mode_handles(shown), loc="outside lower center", ncols=len(modes_of(shown))
     )
     return figure
 
@@ -185,14 +188,25 @@ def _screened(folder: Path) -> pd.DataFrame:
     return some
 
 
-def _both(screened: pd.DataFrame, full: pd.DataFrame | None) -> pd.DataFrame:
-    """The screened designs that have a full analysis, at the same pressure, with its columns."""
+# Where each objective is known, by column.
+_PRESSURES: Final = {"blocked_force_N": "blocked_force_pressure_kPa"}
+
+
+def _both(screened: pd.DataFrame, full: pd.DataFrame | None, name: str) -> pd.DataFrame:
+    """The screened designs whose objective is known of a full analysis at the same pressure too."""
     if full is None:
-        return screened.head(0)
-    whole = reached(full)
-    columns = ["design_id", "pressure_kPa", *OBJECTIVES]
-    both = screened.merge(whole[columns], on="design_id", suffixes=("", "_full"))
-    return both[np.isclose(both["pressure_kPa"], both["pressure_kPa_full"])]
+        return screened.head(0).assign(**{f"{name}_full": 0.0})
+    pressure = _PRESSURES.get(name, "pressure_kPa")
+    columns = [name, pressure]
+    sides = [
+        frame.assign(**{key: pd.to_numeric(frame[key], errors="coerce") for key in columns})
+        for frame in (screened, reached(full))
+    ]
+    both = sides[0].merge(
+        sides[1][["design_id", *columns]], "inner", "design_id", suffixes=("", "_full")
+    )
+    known = both[columns + [f"{key}_full" for key in columns]].notna().all(axis=1)
+    return both[known & np.isclose(both[pressure], both[f"{pressure}_full"])]
 
 
 def _draw_modes(axes: Axes, frame: pd.DataFrame, values: np.ndarray, size: float = 9.0) -> None:
@@ -243,7 +257,7 @@ def _correlation(values: np.ndarray) -> str:
 def _median_error(values: np.ndarray) -> str:
     """The median error in words, of what is not nearly nothing."""
     whole, cells = values.T
-    some = whole > 0.05 * whole.max()
+    some = np.abs(whole) > 0.05 * np.abs(whole).max(initial=0.0)
     if not some.any():
         return ""
     error = float(np.median(np.abs(cells[some] / whole[some] - 1.0)))

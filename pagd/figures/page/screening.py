@@ -14,11 +14,14 @@ from pagd.fronts import OBJECTIVES
 
 __all__ = ["answer_of", "screening"]
 
-_NOTE: Final = """<p class="note">Every design is one chamber of an endless row, which costs a
-second, not a minute, and tells bending, twist and force to some percent. The volume is that of all
-combinations of the objectives that a design of a set reaches or exceeds, as many designs of either
-kind; in brackets the middle 95 % of it when the designs are drawn again and again. Whatever errors
-chambers have, both kinds have them.</p>"""
+_NOTE: Final = """<p class="note">Every design is one chamber of an endless row, which costs
+seconds, not a minute; how far that is from the full analysis tells docs/reduced-order.md. Mixed
+designs, all of them generated, have errors of their own, where chambers change; a gate tells which
+results are doubtful. The volume is that of all combinations of the objectives that a design of a
+draw reaches or exceeds; in brackets the middle 95 % of the draws. p is how often labels given at
+random make as much of a difference. Designs that fail count as designs that do nothing.</p>"""
+# Differences that labels given at random make more rarely are called certain.
+_CERTAIN: Final = 0.05
 
 
 def screening(study: Study) -> str:
@@ -27,6 +30,7 @@ def screening(study: Study) -> str:
     if record is None:
         return ""
     found, fronts = record.figures, fronts_of(study)
+    captions = captions_of(study.screening_pictures)
     return "".join(
         [
             facts(
@@ -34,17 +38,14 @@ def screening(study: Study) -> str:
                     ("generated designs by a chamber each", f"{found['designs']:,}"),
                     ("how they ended", counted(found["statuses"])),
                     ("core-seconds each, median", number(found["cpu_s_median"], 2)),
+                    ("doubtful, by the gate", f"{found.get('doubted', 0):,}"),
                     ("training designs compared", f"{fronts.get('training', 0):,}"),
                 ]
             ),
             f"<p><strong>{escaped(answer_of(fronts))}</strong></p>" if fronts else "",
             _NOTE,
             _table(fronts),
-            pictures(
-                study.screening_pictures,
-                captions_of(study.screening_pictures),
-                captions_of(study.screening_pictures),
-            ),
+            pictures(study.screening_pictures, captions, captions),
         ]
     )
 
@@ -57,24 +58,31 @@ def answer_of(fronts: Mapping[str, Any]) -> str:
     fronts
         What :func:`pagd.fronts.compare` returns.
     """
+    if not fronts["comparisons"]:
+        return "Too few designs came to their end to compare generated and training designs."
     whole = fronts["comparisons"][0]
-    told = {key: number(100.0 * (whole[key] - 1.0), 0) for key in ("ratio", "low", "high")}
-    volume = f"{told['ratio']} % ({told['low']} to {told['high']} %)"
-    if whole["low"] > 1.0:
-        answer = f"By all objectives at once, generated designs do more: by {volume} in volume."
-    elif whole["high"] < 1.0:
-        answer = f"By all objectives at once, generated designs do less: by {volume} in volume."
+    objectives = ", ".join(OBJECTIVES[name] for name in whole["objectives"])
+    better = "more" if whole["ratio"] > 1.0 else "less"
+    told = f"{number(100.0 * abs(whole['ratio'] - 1.0), 0)} % {better} in volume"
+    how = f"{told}, {fronts['drawn']:,} designs of either kind, p = {number(whole['p'], 3)}"
+    if whole["p"] > _CERTAIN:
+        answer = f"By {objectives} at once no difference is certain: {how}."
     else:
-        answer = f"By all objectives at once no difference is certain: {volume} in volume."
-    new, old = (sum(whole["front"][kind].values()) for kind in ("generated", "training"))
-    return f"{answer} Of the {new + old} designs that none exceeds, {new} are generated."
+        answer = f"By {objectives} at once, generated designs do {better}: {how}."
+    return f"{answer} Of their common front {number(100.0 * whole['share'], 0)} % are generated."
 
 
 def _table(fronts: Mapping[str, Any]) -> str:
-    if not fronts:
+    if not fronts or not fronts["comparisons"]:
         return ""
-    head = ["objectives", "volume, generated / training", "draws above 1", "front: generated", ""]
-    head[-1] = "front: training"
+    head = [
+        "objectives",
+        "volume, generated / training",
+        "p",
+        "share of the front",
+        "front of all: generated",
+        "front of all: training",
+    ]
     return data_table(head, [_row(each) for each in fronts["comparisons"]])
 
 
@@ -84,7 +92,8 @@ def _row(comparison: Mapping[str, Any]) -> list[str]:
     return [
         ", ".join(OBJECTIVES[name] for name in comparison["objectives"]),
         f"{ratio} [{low}, {high}]",
-        f"{number(100.0 * comparison['likely'], 0)} %",
+        number(comparison["p"], 3),
+        f"{number(100.0 * comparison['share'], 0)} %",
         *(_modes(front[kind]) for kind in ("generated", "training")),
     ]
 
