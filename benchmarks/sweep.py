@@ -1,10 +1,10 @@
 """The sweep over generated designs: cost by stage, overhead of the workflow, hours for all.
 
-    python benchmarks/sweep.py [--designs 60] [--seed 1] [--cores 2] [--dry-run-designs 11000]
+    python benchmarks/sweep.py [--designs 60] [--seed 1] [--cores 2] [--dry-run-designs 100 1000 11000]
         [--config FILE or JSON] [--page docs/performance.md] [--out results/benchmarks/sweep]
 
 Makes the generated designs first (some minutes, once), then simulates a random sample of them by
-`snakemake --profile profiles/sweep` in a folder of its own, and times a dry run of a table of
+`snakemake --profile profiles/sweep` in a folder of its own, and times dry runs of tables of
 random designs. Repeating the command goes on where it was. Give nothing else to do to the machine
 meanwhile.
 """
@@ -37,7 +37,8 @@ def main() -> None:
     try:
         must_have_section(options.page, _SECTION)
         must_be_positive({"designs": options.designs, "cores": options.cores})
-        must_not_be_negative({"seed": options.seed, "dry-run-designs": options.dry_run_designs})
+        least = min(options.dry_run_designs)
+        must_not_be_negative({"seed": options.seed, "dry-run-designs": least})
         config = configuration.load(options.config or str(ROOT / "config" / "config.yaml"))
         text, commits = _measured(options, config)
         usual = vars(_parser().parse_args([]))
@@ -63,13 +64,13 @@ def _measured(
         raise InputError(f"{sample.project.folder}: none of the {len(names)} designs is done.")
     runs = [run for run in sample.runs() if inside_s(run, costs) > 0]
     overhead = overhead_of(runs, costs)
-    dry_run = _dry_run(options, config) if options.dry_run_designs > 0 else None
-    text = as_markdown(costs, len(names), overhead, options.cores, dry_run)
+    counts = sorted(count for count in options.dry_run_designs if count > 0)
+    dry_runs = [_dry_run(options, config, count) for count in counts]
+    text = as_markdown(costs, len(names), overhead, options.cores, dry_runs)
     return text, [run.commit for run in runs]
 
 
-def _dry_run(options: argparse.Namespace, config: configuration.Config) -> DryRun:
-    count = options.dry_run_designs
+def _dry_run(options: argparse.Namespace, config: configuration.Config, count: int) -> DryRun:
     print(f"dry run of {count} designs …", flush=True)
     project = Project(options.out.resolve() / "dry_run")
     project.write_table_alone(drawn_designs(count, options.seed, config), config)
@@ -85,9 +86,10 @@ def _parser() -> argparse.ArgumentParser:
     add(
         "--dry-run-designs",
         type=int,
-        default=11000,
+        nargs="+",
+        default=[100, 1000, 11000],
         metavar="N",
-        help="designs of the dry run; 0 leaves it out (default: %(default)s)",
+        help="designs of the dry runs; 0 leaves them out (default: 100 1000 11000)",
     )
     add("--config", help="file or JSON text, in place of config/config.yaml")
     add("--page", type=Path, help="page whose section is replaced; printed unless given")

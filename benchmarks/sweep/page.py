@@ -24,9 +24,13 @@ _DRY_RUN_S: Final = 60
 
 
 def as_markdown(
-    costs: Sequence[Cost], asked: int, overhead: Overhead, cores: int, dry_run: DryRun | None
+    costs: Sequence[Cost],
+    asked: int,
+    overhead: Overhead,
+    cores: int,
+    dry_runs: Sequence[DryRun],
 ) -> str:
-    """Return the section: the sample by stage, the overhead, the extrapolation, the dry run.
+    """Return the section: the sample by stage, the overhead, the extrapolation, the dry runs.
 
     Parameters
     ----------
@@ -38,12 +42,12 @@ def as_markdown(
         Of the runs that have simulated it.
     cores
         That the sweep is extrapolated to.
-    dry_run
-        None where none was timed.
+    dry_runs
+        Those that were timed, by rising numbers of designs.
     """
     parts = [_sample(costs, asked), _table(costs, overhead), *_workflow(costs, overhead, cores)]
-    if dry_run is not None:
-        parts.append(_dry_run(dry_run))
+    if dry_runs:
+        parts.append(_dry_runs(dry_runs))
     return "\n\n".join(parts)
 
 
@@ -104,17 +108,24 @@ def _workflow(costs: Sequence[Cost], overhead: Overhead, cores: int) -> list[str
         ),
         wrapped(
             f"The extrapolation is from {len(costs)} designs, with the standard error of their "
-            "mean; it counts from the generated designs to their metrics, without pictures, tables "
-            "and page. Wall time × cores was "
+            "mean; it counts from the generated designs to their metrics, without pictures, tables, "
+            "page and screening. Wall time × cores was "
             f"{overhead.whole_s:,.0f} core-s, of which {overhead.inside_s:,.0f} s were spent "
             "inside the stages."
         ),
     ]
 
 
-def _dry_run(dry_run: DryRun) -> str:
-    return wrapped(
-        f"A dry run of {dry_run.designs:,} designs ({dry_run.jobs:,} jobs) has its table of jobs "
-        f"after {dry_run.table_s:.0f} s (target: {_DRY_RUN_S} s) and has listed every job after "
-        f"{dry_run.all_s:.0f} s."
+def _dry_runs(dry_runs: Sequence[DryRun]) -> str:
+    rows = [
+        [f"{run.designs:,}", f"{run.jobs:,}", f"{run.table_s:.1f} s", f"{run.all_s:.1f} s"]
+        for run in dry_runs
+    ]
+    told = (
+        "A design costs the same however many there are, since its jobs share nothing with those "
+        "of another. What Snakemake adds grows with their number: a dry run of a table of random "
+        "designs, none of it done, up to the tables of all and without generated designs, has its "
+        f"table of jobs and has listed every job after (target: {_DRY_RUN_S} s with 11,000):"
     )
+    head = ["designs", "jobs", "table of jobs", "every job listed"]
+    return f"{wrapped(told)}\n\n{table(head, rows)}"

@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 from performance import bounds, cells  # noqa: E402
+from performance.memory import Memory  # noqa: E402
 from performance.options import add_common, command_of, must_be_positive  # noqa: E402
 from performance.origin import origin_lines  # noqa: E402
 from performance.page import (  # noqa: E402
@@ -198,7 +199,9 @@ def test_tables_and_paragraphs() -> None:
 def test_bounds_are_the_least_times_over_those_measured() -> None:
     rates = bounds.Rates(operations=80.0, memory=20.0)
     one = bounds.Bounds(40_000, 12, 10_000_000, 4.0, 0.1, factorisation_s=0.2, solution_s=0.016)
-    text = bounds.text_of(rates, {"bending": one}, 30.0)
+    held = Memory(imports=300, body=350, tangent=400, factors=600, nonzeros=80, peak=650)
+    text = bounds.text_of(rates, {"bending": one}, {"bending": held}, 30.0)
+    assert "| non-zeros of the factors among it | 80 |" in text
     assert "at 30 kPa" in text
     cells = dict(re.findall(r"^\| (.+?) \| (.+?) \|$", text, re.MULTILINE))
     assert cells["factorisation, GFLOP/s"] == "20.0"
