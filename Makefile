@@ -39,7 +39,9 @@ verify: .venv/pagd-installed ## Compute every row of the verification: docs/veri
 peers: .venv/pagd-installed ## Compare with CalculiX, FElupe and NGSolve: sections of docs/performance.md; hours.
 	@setup/system.sh ../benchmarks/peer-packages.txt
 	python benchmarks/peers.py converged
-	python benchmarks/peers.py calculix --mesher gmsh structured --page docs/performance.md
+	python benchmarks/peers.py same-mesh --time-limit 900 --page docs/performance.md
+	python benchmarks/peers.py equal-error --mesher structured --half-model --time-limit 600 \
+		--finer 3 --page docs/performance.md
 	python benchmarks/peers.py iteration --page docs/performance.md
 
 lint: .venv/pagd-installed ## Check style, types and workflow.

@@ -1,7 +1,8 @@
 """The sweep over generated designs: cost by stage, overhead of the workflow, hours for all.
 
-    python benchmarks/sweep.py [--designs 60] [--seed 1] [--cores 2] [--dry-run-designs 100 1000 11000]
-        [--config FILE or JSON] [--page docs/performance.md] [--out results/benchmarks/sweep]
+    python benchmarks/sweep.py [--designs 60] [--seed 1] [--cores 2] [--config FILE or JSON]
+        [--dry-run-designs 100 1000 11000] [--page docs/performance.md]
+        [--out results/benchmarks/sweep]
 
 Makes the generated designs first (some minutes, once), then simulates a random sample of them by
 `snakemake --profile profiles/sweep` in a folder of its own, and times dry runs of tables of

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
 
 from performance.origin import LIBRARIES, origin_lines
 from performance.page import table, wrapped
@@ -42,6 +43,10 @@ _HEADINGS = (
     "error",
     "times slower",
 )
+
+
+# A trend that leads further than so many times what was measured is no figure.
+_FARTHEST: Final = 10.0
 
 
 def same_mesh_text(
@@ -156,8 +161,9 @@ def _finding(row: EqualErrorRow) -> str:
     if not row.result.ratio.at_least:
         return f"{text}."
     text += "; no mesh that it came through was as good"
-    if row.result.estimate is not None:
-        text += f" (by the trend of its last two: {row.result.estimate:,.0f} times)"
+    estimate, ratio = row.result.estimate, row.result.ratio.value
+    if estimate is not None and estimate <= _FARTHEST * ratio:
+        text += f" (by the trend of its last two: {estimate:,.0f} times)"
     return f"{text}."
 
 

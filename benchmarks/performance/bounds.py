@@ -65,9 +65,9 @@ class Bounds:
 class CountingSolver(PardisoSolver):
     """Pardiso, which counts its operations too."""
 
-    def analyse(self, starts: Int32Array, columns: Int32Array) -> None:
+    def analyse(self, starts: Int32Array, columns: Int32Array, *, is_ring: bool = False) -> None:
         """Take a pattern, and ask for the operations of its factorisation."""
-        super().analyse(starts, columns)
+        super().analyse(starts, columns, is_ring=is_ring)
         self._parameters[_OPERATIONS] = -1
 
     @property

@@ -108,8 +108,8 @@ def _workflow(costs: Sequence[Cost], overhead: Overhead, cores: int) -> list[str
         ),
         wrapped(
             f"The extrapolation is from {len(costs)} designs, with the standard error of their "
-            "mean; it counts from the generated designs to their metrics, without pictures, tables, "
-            "page and screening. Wall time × cores was "
+            "mean; it counts from the generated designs to their metrics, without pictures, "
+            "tables, page and screening. Wall time × cores was "
             f"{overhead.whole_s:,.0f} core-s, of which {overhead.inside_s:,.0f} s were spent "
             "inside the stages."
         ),

@@ -70,6 +70,8 @@ class Assembly:
     def __init__(self, terms: Sequence[EnergyTerm], size: int, fixed: BoolArray) -> None:
         self.terms = tuple(terms)
         self.size = size
+        #: Whether its ends are tied to each other.
+        self.is_ring = False
         self.free = np.flatnonzero(~fixed)
         self._numbering = np.full(size, -1, np.int64)
         self._numbering[self.free] = np.arange(len(self.free))

@@ -154,7 +154,8 @@ class Newton:
 
     def _analyse(self) -> None:
         self._pattern = self.assembly.pattern
-        self.solver.analyse(self._pattern.starts, self._pattern.columns)
+        pattern = self._pattern
+        self.solver.analyse(pattern.starts, pattern.columns, is_ring=self.assembly.is_ring)
 
     def solve(
         self,

@@ -69,6 +69,8 @@ class TiedAssembly(Assembly):
         held = fixed.copy()
         held[slaves] = True
         super().__init__(terms, size, held)
+        # Masters that are held belong to what is beyond an end.
+        self.is_ring = not fixed.reshape(-1, 3)[tie.masters].all()
 
     def _build_pattern(self) -> Pattern:
         """The pattern of what is free; tied elements have maps of their own behind the others."""

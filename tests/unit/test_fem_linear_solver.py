@@ -153,3 +153,22 @@ def test_auto_does_without_mkl(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_unknown_solver_is_refused() -> None:
     with pytest.raises(InputError, match=r"linear_solver is 'mumps'.*auto, pardiso, superlu"):
         linear_solver("mumps")
+
+
+def test_the_solution_does_not_depend_on_the_ordering() -> None:
+    pytest.importorskip("pypardiso")
+    random = np.random.default_rng(5)
+    matrix = csr_array(np.diag(np.full(40, 9.0)))
+    dense = random.normal(size=(40, 40)) * (random.random((40, 40)) < 0.1)
+    matrix = csr_array(matrix.toarray() + dense + dense.T)
+    upper = csr_array(np.triu(matrix.toarray()))
+    upper.sort_indices()
+    right, solutions = random.normal(size=40), []
+    for is_ring in (False, True):
+        solver = linear_solver("pardiso")
+        starts, columns = upper.indptr.astype(np.int32), upper.indices.astype(np.int32)
+        solver.analyse(starts, columns, is_ring=is_ring)
+        solutions.append(solver.solve(upper.data, right))
+        solver.free()
+    assert solutions[0] == pytest.approx(solutions[1], rel=1e-9)
+    assert matrix @ solutions[1] == pytest.approx(right)
