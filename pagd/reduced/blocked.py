@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -54,7 +54,10 @@ def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "au
 
 
 class _Held:
-    """The row with its tip held, at rising pressures."""
+    """The row with its tip held, at rising pressures.
+
+    force: in N, and moments: (j, 3) at the joints in N mm, of the last equilibrium found.
+    """
 
     def __init__(self, reduced: ReducedRow, row: Row, known: Mapping[bool, Loaded]) -> None:
         self._reduced, self._row, self.known = reduced, row, known
@@ -64,7 +67,10 @@ class _Held:
         self.moments = np.zeros((reduced.design.N - 1, 3))
 
     def go_on_to(self, pressure_kPa: float, halvings: int = _HALVINGS) -> bool:
-        """Find the equilibrium at a pressure, if need be by pressures in between."""
+        """Find the equilibrium at a pressure, if need be by pressures in between.
+
+        Where it is not found, the last one in between stays.
+        """
         rod = self._rod(pressure_kPa)
         start = None
         if self._unknowns is not None:
@@ -101,25 +107,28 @@ def _compliances(
     The moment that a cell is loaded with is the mean one of its kind in the row that answers
     moments as cells without one do. What one does not bear changes it as that before did.
     """
-    count = len(reduced.pressure_kPa)
-    chosen = sorted({int(k) for k in np.linspace(0, count - 1, _PRESSURES).round()})
+    last = len(reduced.pressure_kPa) - 1
+    chosen = sorted({int(k) for k in np.linspace(0, last, _PRESSURES).round()})
     constant: dict[bool, list[Compliance]] = {kind: [] for kind in answers}
     found: dict[bool, list[Compliance]] = {kind: [] for kind in answers}
-    joints = reduced.design.chamber_skews()[:-1] != 0.0
     held = _Held(reduced, row, {})
-    for count, number in enumerate(chosen, 1):
+    for number in chosen:
         states = {kind: reduced.cells[kind].states[number] for kind in answers}
         for kind, each in answers.items():
             constant[kind].append(Compliance.constant(each.at(states[kind])))
-        pressures = reduced.pressure_kPa[chosen[:count]]
-        held.known = {kind: Loaded(pressures, known) for kind, known in constant.items()}
-        is_held = number > 0 and held.go_on_to(float(pressures[-1]))
+        held.known = {kind: _between(reduced, chosen, one) for kind, one in constant.items()}
+        is_held = number > 0 and held.go_on_to(float(reduced.pressure_kPa[number]))
         for kind, each in answers.items():
+            moments = held.moments[(reduced.design.chamber_skews()[:-1] != 0.0) == kind]
             one, before = constant[kind][-1], (found[kind] or constant[kind])[-1]
-            moments = held.moments[joints == kind]
             loaded = _loaded(each, states[kind], one, moments) if is_held else None
             found[kind].append(loaded or one.changed_as(before))
-    return {kind: Loaded(pressures, known) for kind, known in found.items()}
+    return {kind: _between(reduced, chosen, one) for kind, one in found.items()}
+
+
+def _between(reduced: ReducedRow, chosen: Sequence[int], known: list[Compliance]) -> Loaded:
+    """Compliances known at the first of the chosen pressures, by their numbers."""
+    return Loaded(reduced.pressure_kPa[list(chosen[: len(known)])], known)
 
 
 def _loaded(

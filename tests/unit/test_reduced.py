@@ -29,6 +29,7 @@ from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.pieces import piece_between
 from pagd.mesh.types import Mesh
 from pagd.metrics import Trajectory, measure
+from pagd.reduced import blocked
 from pagd.reduced.blocked import blocked_forces
 from pagd.reduced.cell_mesh import cell_mesh, cuts_of
 from pagd.reduced.compliance import Compliance
@@ -200,6 +201,41 @@ def test_a_rod_of_many_joints_is_a_beam() -> None:
     assert found is not None
     stiffness = length / compliance
     assert found[0] == pytest.approx(1.5 * stiffness * curvature / length, rel=0.02)
+
+
+def test_a_pressure_too_far_is_come_to_by_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    reduced = solved(STRAIGHT, pieces=False)
+    wanted = blocked_forces(reduced, CHANNEL)
+    starts: list[bool] = []
+
+    def only_near(rod: Rod, guess: np.ndarray | None = None) -> tuple[float, np.ndarray] | None:
+        """As if the solver found nothing from a guess that is farther off than a little."""
+        found = held_force(rod, guess)
+        assert found is not None
+        near = guess is None or abs(rod.force(guess) - found[0]) < 0.012 * abs(found[0])
+        starts.append(near)
+        return found if near else None
+
+    monkeypatch.setattr(blocked, "held_force", only_near)
+    np.testing.assert_allclose(blocked_forces(reduced, CHANNEL), wanted, rtol=1e-6)
+    assert not all(starts)
+
+
+def test_what_a_cell_does_not_bear_changes_it_as_before() -> None:
+    first = Compliance(np.ones((6, 3)), 0.5 * np.ones((6, 3)), np.array([0.0, 2.0, 0.0]))
+    softer = Compliance.constant(3.0 * np.ones((6, 3))).changed_as(first)
+    np.testing.assert_allclose(softer.loaded - softer.without, -0.5)
+    # At the moment of the change, half of it is in the answer: the compliance falls with it.
+    turned, _ = softer.answers(np.array([[0.0, 2.0, 0.0]]))
+    np.testing.assert_allclose(turned, (3.0 - 0.25) * 2.0)
+
+
+def test_fewer_recorded_pressures_than_compliances_do() -> None:
+    whole = solved(STRAIGHT, pieces=False)
+    two = replace(whole, pressure_kPa=whole.pressure_kPa[:2])
+    forces = blocked_forces(two, CHANNEL)
+    assert forces.shape == (2,)
+    assert forces[1] > 0
 
 
 def test_a_cell_that_a_design_does_not_have_is_refused() -> None:
