@@ -46,7 +46,7 @@ _HEADINGS = (
 
 
 # A trend that leads further than so many times what was measured is no figure.
-_FARTHEST: Final = 10.0
+_FARTHEST: Final = 20.0
 
 
 def same_mesh_text(
