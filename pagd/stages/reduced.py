@@ -45,6 +45,9 @@ __all__ = ["CELLS", "PIECES", "Reduced", "analyse"]
 FloatArray = NDArray[np.float64]
 Columns = dict[str, Any]
 
+# Degrees: a row that bends by less is nowhere near itself, and need not be searched.
+_CURLED = 120.0
+
 #: What the column ``fidelity`` says of results of cells alone, and of cells with pieces.
 CELLS, PIECES = "cells", "pieces"
 
@@ -168,7 +171,7 @@ def _until_stopped(
             reason = f"At {pressure:.4g} kPa it bends by {bending:.1f}°, over {limit_deg:g}°."
             row |= {"status": Status.bending_limit.value, "reason": reason}
             return number + 1
-        ending = collides(float(pressure), moved[number])
+        ending = collides(float(pressure), moved[number]) if bending > _CURLED else None
         if ending is not None:
             row |= {"status": ending[0].value, "reason": ending[1]}
             return number + 1
