@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
+from pathlib import Path
 
 from performance.page import table
 
@@ -57,8 +59,6 @@ _ROWS = (
 
 
 def _measured(name: str) -> Memory:
-    import resource
-
     import psutil
 
     from pagd.actuation import use_threads
@@ -93,5 +93,14 @@ def _measured(name: str) -> Memory:
         tangent=with_tangent,
         factors=with_factors,
         nonzeros=_NUMBER * (solver.factor_nonzeros or 0) / _MB,
-        peak=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / _MB,
+        peak=_largest(),
     )
+
+
+def _largest() -> float:
+    """The largest resident memory of this process so far, in MB.
+
+    Not by getrusage: its maximum is that of the process which has started this one, too.
+    """
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    return int(re.findall(r"VmHWM:\s*(\d+) kB", status)[0]) * 1024 / _MB
