@@ -113,6 +113,11 @@ def parts_of_table(wildcards):
     return -(-TABLE_SIZES[wildcards.screened] // CONFIG["screening"]["designs_per_job"])
 
 
+def part_of_table(wildcards):
+    """Which part of how many a job analyses."""
+    return f"{wildcards.part}/{parts_of_table(wildcards)}"
+
+
 def parts_to_screen(wildcards):
     """So many parts that they have the wanted number of designs, each a sample of all."""
     parts, size = parts_of_table(wildcards), TABLE_SIZES[wildcards.screened]

@@ -30,11 +30,11 @@ rule screen_part:
         config=config_of("screening"),
         material=MATERIALS["material"],
         paper=MATERIALS["paper"],
-        parts=parts_of_table,
+        part=part_of_table,
     message:
         "Analyse {wildcards.screened} designs by a chamber each, part {wildcards.part}."
     shell:
-        "pagd screen {input.designs:q}/designs.parquet --part {wildcards.part}/{params.parts}"
+        "pagd screen {input.designs:q}/designs.parquet --part {params.part:q}"
         " --material {params.material:q} --paper {params.paper:q} --config {params.config:q}"
         " --out {output.part:q} > {log:q} 2>&1"
 
