@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 
+from threadpoolctl import threadpool_limits
+
 
 def use_threads(count: int) -> None:
     """Let the kernels and the linear solver use ``count`` threads.
@@ -13,6 +15,9 @@ def use_threads(count: int) -> None:
     import numba
     from numba import config
 
-    for variable in ("MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    for variable in ("MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ[variable] = str(count)
+    # What is loaded has read its setting. Small products in a kernel on more threads than one wait
+    # for each other ten times as long as they take.
+    threadpool_limits(count, user_api="blas")
     numba.set_num_threads(min(count, config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]

@@ -293,3 +293,11 @@ def test_walls_face_each_other_up_to_the_largest_slant(slant_deg: float) -> None
     body = Body(replace(mesh, points=sheared), MATERIAL, PAPER)
     assert body.contact is not None
     assert body.initial_gap == pytest.approx(2.0 * np.cos(np.radians(slant_deg)), rel=1e-5)
+
+
+def test_products_in_kernels_are_of_one_thread_too() -> None:
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    with threadpool_limits(None):
+        use_threads(1)
+        assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {1}
