@@ -300,4 +300,6 @@ def test_products_in_kernels_are_of_one_thread_too() -> None:
 
     with threadpool_limits(None):
         use_threads(1)
-        assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {1}
+        assert {
+            pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"
+        } == {1}
