@@ -1,8 +1,9 @@
 """Which result of a simpler analysis is to be trusted, and what is run where none is.
 
 Cells alone leave out that the ends of a row are unlike its middle. Pieces leave out what is not
-periodic. Neither knows its error; but where errors were large beside full analyses
-(``benchmarks/reduced.py``), something showed it that both know at no cost.
+periodic. Neither knows its error. What is doubted are the cases that the formulation leaves out, as
+far as they show at no cost; how little that tells of the error so far, ``benchmarks/reduced.py``
+prints.
 """
 
 from __future__ import annotations

@@ -32,16 +32,8 @@ from pagd.stages.gate import FAULTS, doubt_of, gated
 from pagd.stages.reduced import CELLS, PIECES, Reduced, analyse
 from pagd.stages.solve import Materials
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
-from pagd.tables import (
-    CHAMBERS,
-    MEASURES,
-    PERFORMANCE,
-    TRAJECTORY,
-    Column,
-    concatenate,
-    read_table,
-    write_rows,
-)
+from pagd.summary import GATHERED
+from pagd.tables import PERFORMANCE, Column, concatenate, read_table, write_rows
 from pagd.tables import write_table as write_columns
 
 __all__ = ["FIDELITIES", "TABLES", "gather", "run"]
@@ -53,9 +45,7 @@ FIDELITIES = (CELLS, PIECES, GATED)
 #: Tables of a screening: file, columns.
 TABLES: dict[str, tuple[Column, ...]] = {
     "performance.parquet": PERFORMANCE,
-    "by_pressure.parquet": MEASURES,
-    "trajectories.parquet": TRAJECTORY,
-    "chambers.parquet": CHAMBERS,
+    **{name: columns for name, _, columns in GATHERED},
 }
 
 # Designs of a batch: some ten seconds of work are what an end without warning costs.
@@ -138,9 +128,7 @@ def run(
         if len(left) < len(batches):
             log.info("%d of %d batches are done already", len(batches) - len(left), len(batches))
         _solve(left, len(mine), config, materials, fidelity, processes)
-        for name, columns in TABLES.items():
-            concatenate(folder / name, [batch.folder / name for batch in batches], columns)
-        outcome.figures |= _figures(folder)
+        outcome.figures |= _gathered([batch.folder for batch in batches], folder)
 
     record = run_stage(
         "screening",
@@ -194,9 +182,7 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
         raise InputError(f"Design {twice} is in more than one of the parts {parts[0]} and so on.")
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
-        for name, columns in TABLES.items():
-            concatenate(folder / name, [one / name for one in parts], columns)
-        outcome.figures |= _figures(folder)
+        outcome.figures |= _gathered(parts, folder)
 
     return run_stage(
         "screening",
@@ -206,6 +192,13 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
         configuration=made_of,
         libraries=_LIBRARIES,
     )
+
+
+def _gathered(parts: Sequence[Path], folder: Path) -> dict[str, Any]:
+    """Write the tables of all parts, in order; the figures of what they hold."""
+    for name, columns in TABLES.items():
+        concatenate(folder / name, [one / name for one in parts], columns)
+    return _figures(folder)
 
 
 def _discard(kept: Path) -> None:
