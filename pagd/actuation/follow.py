@@ -66,6 +66,7 @@ def follow(
     recorder: Recorder,
     wanted_correction: float = 1.0,
     guide: Guide | None = None,
+    solver: LinearSolver | None = None,
 ) -> ActuationResult:
     """Raise the pressure through the recorded ones, as far as it goes.
 
@@ -83,15 +84,19 @@ def follow(
         First correction of a node, in mm, that steps are chosen for; see :class:`StepControl`.
     guide
         First guesses, if there are any.
+    solver
+        The linear solver, which then keeps its factors; without it, one of that name is made and
+        freed.
     """
-    solver = linear_solver(actuation.linear_solver)
+    kept, solver = solver, solver or linear_solver(actuation.linear_solver)
     touches = any(isinstance(term, FaceContact | PlaneContact) for term in assembly.terms)
     settings = NewtonSettings(tolerance=actuation.tolerance_mm, **(_PATIENT if touches else {}))
     newton = Newton(assembly, solver, 3 * body.nodes, settings, body.pressure, recorder.force)
     followed = _follow(body, newton, actuation, recorder, wanted_correction, guide)
     # Where the path ends early, how far it came is a result too.
     recorder.record_last()
-    solver.free()
+    if kept is None:
+        solver.free()
     history = recorder.history()
     profile = _profile(assembly, solver, recorder)
     status, reason = _ending(followed, recorder, history["pressure_kPa"])

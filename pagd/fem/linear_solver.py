@@ -181,11 +181,16 @@ class PardisoSolver:
         return result
 
     def analyse(self, starts: Int32Array, columns: Int32Array, *, is_ring: bool = False) -> None:
-        """Take a new pattern; the symbolic factorisation waits for the first values."""
+        """Take a new pattern; the symbolic factorisation waits for the first values.
+
+        What is known of the same arrays is kept.
+        """
+        ordering = self._NESTED_DISSECTION if is_ring else self._MINIMUM_DEGREE
+        is_same = starts is self._starts and columns is self._columns
+        if self._analysed and is_same and ordering == self._parameters[self._ORDERING]:
+            return
         self.free()
-        self._parameters[self._ORDERING] = (
-            self._NESTED_DISSECTION if is_ring else self._MINIMUM_DEGREE
-        )
+        self._parameters[self._ORDERING] = ordering
         self._starts, self._columns = starts, columns
 
     def solve(self, values: FloatArray, right: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ IntArray = NDArray[np.int64]
 
 @compiled
 def _unpack(packed: FloatArray, matrix: FloatArray) -> None:
-    """Fill a symmetric matrix (n, n) from its upper triangle, packed row by row."""
+    """Fill a symmetric matrix (n, at least n) from its upper triangle, packed row by row."""
     size, entry = len(matrix), 0
     for i in range(size):
         for j in range(i, size):
@@ -27,25 +27,34 @@ def _unpack(packed: FloatArray, matrix: FloatArray) -> None:
 
 
 @compiled
-def _fill_motion(
-    arms: IntArray, all_arms: FloatArray, rotation: FloatArray, motion: FloatArray
+def _times_motion(
+    matrix: FloatArray, arms: IntArray, all_arms: FloatArray, rotation: FloatArray
 ) -> None:
-    """Fill T (n, n + 6) of an element: ``arms`` (n,) number what its tied unknowns follow."""
-    size = len(arms)
-    motion[:, :] = 0.0
-    for row in range(size):
-        if arms[row] < 0:
-            motion[row, row] = 1.0
+    """Make M (m, n + 6), whose last six columns are empty, M T, in place.
+
+    ``arms`` (n,) number what the unknowns of tied nodes follow, three on end.
+    """
+    rows, size = len(matrix), len(arms)
+    matrix[:, size:] = 0.0
+    first = 0
+    while first < size:
+        if arms[first] < 0:
+            first += 1
             continue
-        node, i = arms[row] // 3, arms[row] % 3
-        y, first = all_arms[node], row - i
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for column in range(3):
-            motion[row, first + column] = rotation[i, column]
-        # δθ × y
-        motion[row, size + j] = y[k]
-        motion[row, size + k] = -y[j]
-        motion[row, size + 3 + i] = 1.0
+        y = all_arms[arms[first] // 3]
+        for row in range(rows):
+            a, b, c = matrix[row, first], matrix[row, first + 1], matrix[row, first + 2]
+            # δθ × y, and δd
+            matrix[row, size] += y[1] * c - y[2] * b
+            matrix[row, size + 1] += y[2] * a - y[0] * c
+            matrix[row, size + 2] += y[0] * b - y[1] * a
+            matrix[row, size + 3] += a
+            matrix[row, size + 4] += b
+            matrix[row, size + 5] += c
+            for k in range(3):
+                turned = a * rotation[0, k] + b * rotation[1, k] + c * rotation[2, k]
+                matrix[row, first + k] = turned
+        first += 3
 
 
 @compiled_parallel
@@ -70,13 +79,18 @@ def transformed(
         The arms y (ties, 3) and R of the motion.
     """
     size = arms.shape[1]
+    whole = size + 6
     for e in prange(len(elements)):
-        matrix, motion = np.empty((size, size)), np.empty((size, size + 6))
+        # Tᵀ K T = ((K T)ᵀ T)ᵀ, since K is symmetric.
+        matrix, transposed = np.empty((size, whole)), np.empty((whole, whole))
         _unpack(tangents[elements[e]], matrix)
-        _fill_motion(arms[e], all_arms, rotation, motion)
-        reduced = np.dot(motion.T, np.dot(matrix, motion))
+        _times_motion(matrix, arms[e], all_arms, rotation)
+        for i in range(size):
+            for j in range(whole):
+                transposed[j, i] = matrix[i, j]
+        _times_motion(transposed, arms[e], all_arms, rotation)
         entry = 0
-        for i in range(size + 6):
-            for j in range(i, size + 6):
-                result[e, entry] = reduced[i, j]
+        for i in range(whole):
+            for j in range(i, whole):
+                result[e, entry] = transposed[j, i]
                 entry += 1

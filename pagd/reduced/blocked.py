@@ -26,7 +26,7 @@ _PRESSURES = 4
 _HALVINGS = 4
 
 
-def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "auto") -> FloatArray:
+def blocked_forces(reduced: ReducedRow, channel: Channel) -> FloatArray:
     """The force on the support in N, positive towards −z, at all pressures (p,).
 
     Not a number from where on no equilibrium of the held row was found.
@@ -37,12 +37,11 @@ def blocked_forces(reduced: ReducedRow, channel: Channel, solver_name: str = "au
         Where the tangent of a cell is singular.
     """
     row = reduced.row(_edge(reduced), channel)
-    answers = {kind: Answers(cell.model, solver_name) for kind, cell in reduced.cells.items()}
-    try:
-        known = _compliances(reduced, row, answers)
-    finally:
-        for each in answers.values():
-            each.free()
+    answers = {
+        kind: Answers(cell.model, cell.assembly, cell.solver)
+        for kind, cell in reduced.cells.items()
+    }
+    known = _compliances(reduced, row, answers)
     forces = np.full(len(reduced.pressure_kPa), np.nan)
     forces[0] = 0.0
     held = _Held(reduced, row, known)

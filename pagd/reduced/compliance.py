@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.fem.assembly import State
-from pagd.fem.linear_solver import linear_solver
+from pagd.fem.assembly import Assembly, State
+from pagd.fem.linear_solver import LinearSolver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.tied_assembly import TiedAssembly
 from pagd.reduced.segment import Segment
@@ -70,16 +70,16 @@ class Answers:
     ----------
     segment
         The segment.
-    solver_name
-        See :func:`pagd.fem.linear_solver.linear_solver`.
+    assembly
+        The segment's terms, tied.
+    solver
+        The linear solver; what it knows of the assembly's pattern is used.
     """
 
-    def __init__(self, segment: Segment, solver_name: str = "auto") -> None:
-        assembly = segment.assembly()
+    def __init__(self, segment: Segment, assembly: Assembly, solver: LinearSolver) -> None:
         if not isinstance(assembly, TiedAssembly):
             raise TypeError("only a cut that is tied can be loaded")
-        self._segment, self._assembly = segment, assembly
-        self._solver = linear_solver(solver_name)
+        self._segment, self._assembly, self._solver = segment, assembly, solver
         self._newton = Newton(assembly, self._solver, 3 * segment.nodes, _SETTINGS)
 
     def at(self, state: State) -> FloatArray:
@@ -120,10 +120,6 @@ class Answers:
     @property
     def _rows(self) -> NDArray[np.int64]:
         return 3 * self._assembly.tie.motion + np.arange(3)
-
-    def free(self) -> None:
-        """Give the memory of the factors back."""
-        self._solver.free()
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -14,7 +14,8 @@ from pagd.actuation.result import ActuationResult
 from pagd.actuation.settings import Actuation
 from pagd.design import Channel, Design
 from pagd.errors import Status
-from pagd.fem.assembly import State
+from pagd.fem.assembly import Assembly, State
+from pagd.fem.linear_solver import LinearSolver, linear_solver
 from pagd.fem.newton import NewtonSettings
 from pagd.materials import Elastomer, Sheet
 from pagd.mesh.pieces import piece_between
@@ -57,6 +58,7 @@ class SolvedCell:
 
     mesh: as its row has it, of the whole width where the row is. model: what was solved, a half
     for straight cells. result: of one cell. path: the shapes on ``mesh``. states: (p,) recorded.
+    assembly, solver: of the model, the latter with what it knows of it until it is freed.
     """
 
     mesh: CellMesh
@@ -64,6 +66,8 @@ class SolvedCell:
     result: ActuationResult
     path: CellPath
     states: list[State]
+    assembly: Assembly
+    solver: LinearSolver
 
     @property
     def factorisations(self) -> int:
@@ -134,6 +138,11 @@ class ReducedRow:
         of_cells = sum(cell.factorisations for cell in self.cells.values())
         return of_cells + sum(piece.followed.factorisations for piece in self.pieces)
 
+    def free(self) -> None:
+        """Give the memory of the factors back; what asks for them computes them anew."""
+        for cell in self.cells.values():
+            cell.solver.free()
+
 
 def solve_row(
     design: Design,
@@ -145,6 +154,8 @@ def solve_row(
     mesh: Mesh | None = None,
 ) -> ReducedRow:
     """Solve the cells of a design, and the pieces between them if the mesh of its row is given.
+
+    The cells keep their factors, to be freed by :meth:`ReducedRow.free`.
 
     Parameters
     ----------
@@ -203,8 +214,9 @@ def _solved_cell(
     mesh = cell_mesh(design, channel, size, helical=helical, half=half)
     finer = replace(actuation, tolerance_mm=_TOLERANCE_SHARE * actuation.tolerance_mm)
     model = Cell(mesh, material, paper, finer)
-    recorder = _Keeping(model)
-    result = follow(model, model.assembly(), finer, recorder, _WANTED_CORRECTION)
+    recorder, assembly = _Keeping(model), model.assembly()
+    solver = linear_solver(actuation.linear_solver)
+    result = follow(model, assembly, finer, recorder, _WANTED_CORRECTION, solver=solver)
     assert model.tie is not None
     # Behind a limit point the pressure falls: a row of cells is followed up to there.
     pressures = np.array([state.pressure_kPa for state in result.states])
@@ -214,9 +226,10 @@ def _solved_cell(
     kept = recorder.kept[rising]
     path = CellPath(pressures, rows[:, : len(mesh.mesh.points)], rows[:, -2:], model.tie)
     if design.is_straight or not half:
-        return SolvedCell(mesh, model, result, path, kept)
+        return SolvedCell(mesh, model, result, path, kept, assembly, solver)
     whole = cell_mesh(design, channel, size, helical=False)
-    return SolvedCell(whole, model, result, path.unfolded(mesh, whole), kept)
+    unfolded = path.unfolded(mesh, whole)
+    return SolvedCell(whole, model, result, unfolded, kept, assembly, solver)
 
 
 def _reached(cells: Mapping[bool, SolvedCell]) -> tuple[FloatArray, Status, str | None]:

@@ -134,15 +134,17 @@ def _analysed(
         actuation,
         mesh if pieces else None,
     )
-    moved = _moved(reduced, mesh, rules.channel)
-    trajectory = measure(sections_of(mesh, stations_of(design)), reduced.pressure_kPa, moved)
-    row |= {"status": reduced.status.value, "reason": reduced.reason}
-    count = _until_stopped(trajectory, moved, mesh, limit, row)
-    reduced = replace(reduced, pressure_kPa=reduced.pressure_kPa[:count])
-    trajectory = measure(
-        sections_of(mesh, stations_of(design)), reduced.pressure_kPa, moved[:count]
-    )
-    return _measured(named, config, rules, reduced, trajectory, actuation, row)
+    try:
+        moved = _moved(reduced, mesh, rules.channel)
+        sections = sections_of(mesh, stations_of(design))
+        trajectory = measure(sections, reduced.pressure_kPa, moved)
+        row |= {"status": reduced.status.value, "reason": reduced.reason}
+        count = _until_stopped(trajectory, moved, mesh, limit, row)
+        reduced = replace(reduced, pressure_kPa=reduced.pressure_kPa[:count])
+        trajectory = measure(sections, reduced.pressure_kPa, moved[:count])
+        return _measured(named, config, rules, reduced, trajectory, actuation, row)
+    finally:
+        reduced.free()
 
 
 def _refuse_invalid(design: Design, rules: GeometryRules) -> None:
@@ -225,7 +227,7 @@ def _forces(reduced: ReducedRow, channel: Channel, actuation: Actuation) -> Floa
     if actuation.blocked_force != "edge" or reduced.design.N < 2:
         return nothing
     try:
-        return blocked_forces(reduced, channel, actuation.linear_solver)
+        return blocked_forces(reduced, channel)
     except SingularMatrixError:
         return nothing
 
