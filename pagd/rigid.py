@@ -7,11 +7,28 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from scipy.linalg import expm, logm
+
 from pagd.rotations import kabsch
 
 FloatArray = NDArray[np.float64]
 
-__all__ = ["RigidMotion"]
+__all__ = ["RigidMotion", "small_rotation"]
+
+
+def small_rotation(points: FloatArray, moved: FloatArray) -> FloatArray:
+    """The rotation vector (3,) of the rigid motion nearest to displacements of points.
+
+    Parameters
+    ----------
+    points
+        (k, 3) in mm, not all on a line.
+    moved
+        (k, 3), so small that they are linear in the rotation ω: d + ω × x in the mean square.
+    """
+    arms = points - points.mean(axis=0)
+    inertia = np.sum(arms**2) * np.eye(3) - arms.T @ arms
+    return np.asarray(np.linalg.solve(inertia, np.cross(arms, moved).sum(axis=0)))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -39,6 +56,13 @@ class RigidMotion:
     def __matmul__(self, first: RigidMotion) -> RigidMotion:
         """The motion that does ``first`` and then this one."""
         return RigidMotion(self.rotation @ first.rotation, self(first.displacement))
+
+    def power(self, share: float) -> RigidMotion:
+        """So much of the screw motion that it is: a rotation by that share of the angle."""
+        motion = np.eye(4)
+        motion[:3, :3], motion[:3, 3] = self.rotation, self.displacement
+        found = np.real(expm(share * logm(motion)))
+        return RigidMotion(found[:3, :3], found[:3, 3])
 
     def inverse(self) -> RigidMotion:
         """The motion back."""

@@ -21,7 +21,7 @@ __all__ = ["blocked_forces"]
 
 # Compliances change slowly: they are computed at so many recorded pressures, evenly spread from the
 # first to the last.
-_PRESSURES = 4
+_PRESSURES = 3
 # A pressure at which no equilibrium is found is come to by so many halvings of the way there.
 _HALVINGS = 4
 
@@ -55,7 +55,7 @@ def blocked_forces(reduced: ReducedRow, channel: Channel) -> FloatArray:
 class _Held:
     """The row with its tip held, at rising pressures.
 
-    force: in N, and moments: (j, 3) at the joints in N mm, of the last equilibrium found.
+    force: in N, and moments: (N − 1, 3) between the cells in N mm, of the last equilibrium found.
     """
 
     def __init__(self, reduced: ReducedRow, row: Row, known: Mapping[bool, Loaded]) -> None:
@@ -77,7 +77,7 @@ class _Held:
         found = held_force(rod, start)
         if found is not None:
             self._pressure, (self.force, self._unknowns) = pressure_kPa, found
-            self.moments = rod.moments(self._unknowns)
+            self.moments = rod.moments(self._unknowns)[-len(self.moments) :]
             return True
         between = 0.5 * (self._pressure + pressure_kPa)
         return (
@@ -156,7 +156,7 @@ def _rod(reduced: ReducedRow, row: Row, known: Mapping[bool, Compliance], pressu
         for joint, kind in zip(joints, kinds[1:], strict=True)
     ]
     edge = row.points + row.displacement(shapes, pieces)
-    return Rod(
+    rod = Rod(
         base=places[0],
         rotations=np.stack([joint.rotation for joint in joints]),
         displacements=np.stack([joint.displacement for joint in joints]),
@@ -166,3 +166,7 @@ def _rod(reduced: ReducedRow, row: Row, known: Mapping[bool, Compliance], pressu
         height=-design.t_b,
         is_planar=design.is_straight,
     )
+    if not kinds[0]:
+        return rod
+    half = np.array([design.L / 4, 0.0, -design.t_b])
+    return rod.with_joint_in_front(half, known[True].of_half_a_chamber())

@@ -12,6 +12,9 @@ from pagd.mesh.chamber_row import chamber_row, gap_plane
 from pagd.mesh.pieces import nodes_on, piece_between
 from pagd.mesh.types import FloatArray, IntArray, Mesh
 
+# Nodes nearer than so many mm are at the same place.
+_SAME_PLACE = 1e-4
+
 __all__ = ["CellMesh", "cell_mesh", "cut_nodes", "cuts_of"]
 
 
@@ -22,6 +25,7 @@ class CellMesh:
     mesh: its blocks; with the surface ``symmetry`` it is the half y ≥ 0.
     skew: shear dx/dy of the chamber and of both cuts.
     first, last: the cuts are the planes x = ``first`` + ``skew`` y and x = ``last`` + ``skew`` y.
+    length: L of the chamber, in mm.
     left, right: (k,) nodes on both, each pair one pitch apart.
     """
 
@@ -29,6 +33,7 @@ class CellMesh:
     skew: float
     first: float
     last: float
+    length: float
     left: IntArray
     right: IntArray
 
@@ -36,6 +41,11 @@ class CellMesh:
     def pitch(self) -> float:
         """Distance (mm) from cell to cell along x."""
         return self.last - self.first
+
+    def base_at(self, plane: float, height: float) -> IntArray:
+        """Nodes (k,) of the base, up to a height (mm), on the plane x = ``plane`` + skew y."""
+        nodes = nodes_on(self.mesh.points, plane, self.skew)
+        return nodes[self.mesh.points[nodes, 2] <= height + _SAME_PLACE]
 
 
 def cell_mesh(
@@ -70,7 +80,7 @@ def cell_mesh(
     mesh = piece_between(whole, start + first, start + last, skew).mesh
     mesh = replace(mesh, points=mesh.points - [start, 0.0, 0.0])
     left, right = (cut_nodes(mesh.points, place, skew) for place in (first, last))
-    return CellMesh(mesh, skew, first, last, left, right)
+    return CellMesh(mesh, skew, first, last, design.L, left, right)
 
 
 def cuts_of(design: Design, size: float) -> tuple[float, float]:

@@ -21,14 +21,17 @@ from pagd.fem.assembly import Assembly, State
 from pagd.fem.linear_solver import LinearSolver
 from pagd.fem.newton import Newton, NewtonSettings
 from pagd.fem.tied_assembly import TiedAssembly
-from pagd.reduced.segment import Segment
+from pagd.reduced.cell import Cell
+from pagd.rigid import small_rotation
 
 FloatArray = NDArray[np.float64]
 
 __all__ = ["Answers", "Compliance", "Loaded"]
 
+# The tangent wanted in the end is that of the last iteration: each has its own, and the last
+# correction is as small as a hundredth of what a moment does.
 _SETTINGS = NewtonSettings(
-    tolerance=1e-3, iterations=14, growth=2.0, contraction=0.55, reuses=8, largest_correction=10.0
+    tolerance=5e-3, iterations=14, growth=2.0, reuses=0, largest_correction=10.0
 )
 
 
@@ -36,9 +39,9 @@ _SETTINGS = NewtonSettings(
 class Compliance:
     """Rotation and displacement of the right cut by a moment on it, at one pressure.
 
-    without, loaded: (6, 3) of the state without a moment and of that with ``moment`` (3,), in N mm:
+    without, loaded: (9, 3) of the state without a moment and of that with ``moment`` (3,), in N mm:
     rows 0 to 2 in 1/(N mm), of the rotation in space, rows 3 to 5 in 1/N, of the image of the
-    tie's centre.
+    tie's centre, rows 6 to 8 in 1/(N mm), of the rotation of the chamber's base from wall to wall.
     """
 
     without: FloatArray
@@ -47,75 +50,93 @@ class Compliance:
 
     @classmethod
     def constant(cls, without: FloatArray) -> Compliance:
-        """The compliance (6, 3) whatever the moment."""
+        """The compliance (9, 3) whatever the moment."""
         return cls(without, without, np.zeros(3))
 
     def changed_as(self, other: Compliance) -> Compliance:
         """The same without a moment, changed by one as the ``other`` is."""
         return Compliance(self.without, self.without + other.loaded - other.without, other.moment)
 
-    def answers(self, moments: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rotation vectors and displacements (k, 3) by moments (k, 3)."""
-        square = float(self.moment @ self.moment)
-        share = moments @ self.moment / square if square else np.zeros(len(moments))
-        further = 0.5 * share[:, None] * (moments @ (self.loaded - self.without).T)
-        found = moments @ self.without.T + further
-        return found[:, :3], found[:, 3:]
+    def of_half_a_chamber(self) -> Compliance:
+        """That of half of the chamber's base alone, which turns at one place."""
+
+        def half(whole: FloatArray) -> FloatArray:
+            result = np.zeros_like(whole)
+            result[:3] = 0.5 * whole[6:]
+            return result
+
+        return Compliance(half(self.without), half(self.loaded), self.moment)
 
 
 class Answers:
-    """The compliances of a segment whose right cut is tied.
+    """The compliances of a cell.
 
     Parameters
     ----------
-    segment
-        The segment.
+    cell
+        The cell.
     assembly
-        The segment's terms, tied.
+        The cell's terms, tied.
     solver
         The linear solver; what it knows of the assembly's pattern is used.
     """
 
-    def __init__(self, segment: Segment, assembly: Assembly, solver: LinearSolver) -> None:
+    def __init__(self, cell: Cell, assembly: Assembly, solver: LinearSolver) -> None:
         if not isinstance(assembly, TiedAssembly):
             raise TypeError("only a cut that is tied can be loaded")
-        self._segment, self._assembly, self._solver = segment, assembly, solver
-        self._newton = Newton(assembly, self._solver, 3 * segment.nodes, _SETTINGS)
+        self._cell, self._assembly, self._solver = cell, assembly, solver
+        self._newton = Newton(assembly, self._solver, 3 * cell.nodes, _SETTINGS)
 
     def at(self, state: State) -> FloatArray:
-        """The compliance (6, 3) of a state, and of what acts on it; its factors are kept.
+        """The compliance (9, 3) of a state, and of what acts on it; its factors are kept.
 
         Raises
         ------
         SingularMatrixError
             Where the tangent is singular.
         """
-        assembly, rows = self._assembly, self._rows
         self._newton.linearise_at(state)
-        result = np.zeros((6, 3))
+        return self._by_last_factors(state)
+
+    def _by_last_factors(self, state: State) -> FloatArray:
+        """The compliance (9, 3) of a state by the factors there are, of one near it."""
+        assembly, rows = self._assembly, self._rows
+        result = np.zeros((9, 3))
         for column in range(3):
             load = np.zeros(assembly.size)
             # Of a half model the other half bears as much.
-            load[rows[0] + column] = 1.0 / self._segment.copies
+            load[rows[0] + column] = 1.0 / self._cell.copies
             found = assembly.full(self._solver.solve_again(load[assembly.free]))
-            result[:, column] = found[rows[0] : rows[0] + 6]
+            result[:6, column] = found[rows[0] : rows[0] + 6]
+            result[6:, column] = self._turn(state, found, self._cell.cell.length)
+            result[6:, column] -= self._turn(state, found, 0.0)
         return result
 
     def under(self, state: State, moment: FloatArray) -> FloatArray | None:
-        """The compliance (6, 3) of the state that a moment (3,) makes of one without; or none.
+        """The compliance (9, 3) of the state that a moment (3,) makes of one without; or none.
 
         To be asked after :meth:`at` that state.
         """
         assembly, rows = self._assembly, self._rows
         load = np.zeros(assembly.size)
-        load[rows[0] : rows[0] + 3] = moment / self._segment.copies
+        load[rows[0] : rows[0] + 3] = moment / self._cell.copies
         step = assembly.full(self._solver.solve_again(load[assembly.free]))
-        assembly.moment = moment / self._segment.copies
+        assembly.moment = moment / self._cell.copies
         try:
             result = self._newton.solve(assembly.advance(state, step))
-            return None if result.state is None else self.at(result.state)
+            return None if result.state is None else self._by_last_factors(result.state)
         finally:
             assembly.moment = np.zeros(3)
+
+    def _turn(self, state: State, change: FloatArray, plane: float) -> FloatArray:
+        """The rotation vector (3,) of the base at a plane by a ``change`` (size,) of a state."""
+        nodes = self._cell.cell.base_at(plane, 0.0)
+        places = self._cell.points[nodes] + state.unknowns.reshape(-1, 3)[nodes]
+        moved = change.reshape(-1, 3)[nodes]
+        if self._cell.copies == 2:
+            mirror = np.array([1.0, -1.0, 1.0])
+            places, moved = (np.vstack([rows, mirror * rows]) for rows in (places, moved))
+        return small_rotation(places, moved)
 
     @property
     def _rows(self) -> NDArray[np.int64]:

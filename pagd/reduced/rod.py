@@ -9,21 +9,20 @@ finite; shear and stretch by forces are left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pagd.reduced.compliance import Compliance
+from pagd.reduced.rod_kernels import shape, unbalanced
 from pagd.rigid import RigidMotion
-from pagd.rotations import rotation_matrix
 
 FloatArray = NDArray[np.float64]
 
 __all__ = ["Rod", "held_force"]
 
-_UP = np.array([0.0, 0.0, 1.0])
 # mm that the edge may be off its height.
 _HELD = 1e-6
 
@@ -49,46 +48,53 @@ class Rod:
     height: float
     is_planar: bool
 
-    def shape(self, moments: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Rotations (j, 3, 3) of the cells, centres (j, 3) of the cuts and the edge (2, 3).
+    def with_joint_in_front(self, centre: FloatArray, compliance: Compliance) -> Rod:
+        """The same with one joint more in the first cell, at (3,), where nothing turns at rest."""
+        return replace(
+            self,
+            rotations=np.concatenate([np.eye(3)[None], self.rotations]),
+            displacements=np.concatenate([np.zeros((1, 3)), self.displacements]),
+            centres=np.concatenate([centre[None], self.centres]),
+            compliances=[compliance, *self.compliances],
+        )
 
-        By moments (j, 3) in N mm in the coordinates of the cell before each joint.
+    def lacking(self) -> Callable[[FloatArray], FloatArray]:
+        """A function of the unknowns (s,): what they lack of equilibrium (s,).
+
+        Unknowns are forces at the edge in N, then moments at the joints in N mm; what is lacking
+        are heights of the edge in mm, then moments.
         """
-        turned, aside = self._answers(moments)
-        further = rotation_matrix(turned)
-        rotations = further @ self.rotations
-        arms = self.displacements - self.centres
-        displacements = np.einsum("jab,jb->ja", further, arms) + self.centres + aside
-        place, cells, cuts = self.base, [], []
-        for rotation, displacement, centre in zip(
-            rotations, displacements, self.centres, strict=True
-        ):
-            cells.append(place.rotation)
-            cuts.append(place(centre))
-            place = place @ RigidMotion(rotation, displacement)
-        return np.stack(cells), np.stack(cuts), place(self.edge)
+        arrays, joints = self._arrays(), len(self.centres)
+        cells, cuts, ends = np.empty((joints, 3, 3)), np.empty((joints, 3)), np.empty((2, 3))
+        balance = np.empty((joints, 3))
 
-    def _answers(self, moments: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rotation vectors and displacements (j, 3) of the joints by their moments."""
-        turned, aside = np.zeros_like(moments), np.zeros_like(moments)
-        for compliance in {id(one): one for one in self.compliances}.values():
-            mine = np.array([one is compliance for one in self.compliances])
-            turned[mine], aside[mine] = compliance.answers(moments[mine])
-        return turned, aside
+        def lacking(unknowns: FloatArray) -> FloatArray:
+            forces, moments = self._split(unknowns)
+            shape(*arrays, moments, cells, cuts, ends)
+            unbalanced(cells, cuts, ends, forces, moments, balance)
+            heights = ends[:, 2] - self.height
+            if self.is_planar:
+                return np.concatenate([heights[:1], balance[:, 1]])
+            return np.concatenate([heights, balance.ravel()])
 
-    def lacking(self, unknowns: FloatArray) -> FloatArray:
-        """What forces at the edge, then moments at the joints, lack of equilibrium.
+        return lacking
 
-        Heights of the edge in mm for its forces in N, and moments in N mm.
-        """
-        forces, moments = self._split(unknowns)
-        cells, cuts, edge = self.shape(moments)
-        acting = sum(np.cross(end - cuts, f * _UP) for end, f in zip(edge, forces, strict=True))
-        balance = moments - np.einsum("jba,jb->ja", cells, acting)
-        heights = edge[:, 2] - self.height
-        if self.is_planar:
-            return np.concatenate([heights[:1], balance[:, 1]])
-        return np.concatenate([heights, balance.ravel()])
+    def _arrays(self) -> tuple[FloatArray, ...]:
+        """What of the rod :func:`pagd.reduced.rod_kernels.shape` is given first."""
+        moments = np.stack([each.moment for each in self.compliances])
+        squares = (moments**2).sum(axis=1, keepdims=True)
+        without = np.stack([each.without[:6] for each in self.compliances])
+        loaded = np.stack([each.loaded[:6] for each in self.compliances])
+        return (
+            np.column_stack([self.base.rotation, self.base.displacement]),
+            np.ascontiguousarray(self.rotations),
+            np.ascontiguousarray(self.displacements),
+            np.ascontiguousarray(self.centres),
+            without,
+            loaded - without,
+            np.divide(moments, squares, out=np.zeros_like(moments), where=squares > 0),
+            np.ascontiguousarray(self.edge),
+        )
 
     def _split(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
         if self.is_planar:
@@ -117,8 +123,9 @@ def held_force(rod: Rod, guess: FloatArray | None = None) -> tuple[float, FloatA
     from scipy.optimize import root
 
     start = np.zeros(rod.size) if guess is None else guess
-    found = root(rod.lacking, start, method="hybr", options={"xtol": 1e-9})
-    heights = rod.lacking(found.x)[: 1 if rod.is_planar else 2]
+    lacking = rod.lacking()
+    found = root(lacking, start, method="hybr", options={"xtol": 1e-9})
+    heights = lacking(found.x)[: 1 if rod.is_planar else 2]
     if not found.success or np.abs(heights).max() > _HELD:
         return None
     return rod.force(found.x), found.x
