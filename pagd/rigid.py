@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scipy.linalg import expm, logm
-
-from pagd.rotations import kabsch
+from pagd.rotations import kabsch, rotation_matrix, rotation_vector
 
 FloatArray = NDArray[np.float64]
+
+# Gauss's rule with eight points: exact to the last digit for rotations up to half a turn.
+_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 __all__ = ["RigidMotion", "small_rotation"]
 
@@ -59,11 +60,19 @@ class RigidMotion:
 
     def power(self, share: float) -> RigidMotion:
         """So much of the screw motion that it is: a rotation by that share of the angle."""
-        motion = np.eye(4)
-        motion[:3, :3], motion[:3, 3] = self.rotation, self.displacement
-        found = np.real(expm(share * logm(motion)))
-        return RigidMotion(found[:3, :3], found[:3, 3])
+        turned = rotation_vector(self.rotation)
+        # The displacement is V(ω) v of the screw's rates ω and v.
+        rate = np.linalg.solve(_mean_rotation(turned), self.displacement)
+        displacement = _mean_rotation(share * turned) @ (share * rate)
+        return RigidMotion(rotation_matrix(share * turned), displacement)
 
     def inverse(self) -> RigidMotion:
         """The motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.displacement)
+
+
+def _mean_rotation(turned: FloatArray) -> FloatArray:
+    """The mean V (3, 3) of exp(s [ω]×) over s from 0 to 1, for a rotation vector ω (3,)."""
+    shares = 0.5 * (1.0 + _PLACES)
+    rotations = rotation_matrix(shares[:, None] * turned)
+    return np.asarray(np.einsum("s,sij->ij", 0.5 * _WEIGHTS, rotations))

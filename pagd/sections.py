@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pagd.design import Design
 from pagd.errors import InputError
+from pagd.fem.compiled import compiled
 from pagd.fem.shapes import triangle_values
 from pagd.rotations import kabsch, rotation_matrix, rotation_vector
 
@@ -33,8 +34,6 @@ ALONG, ACROSS = 3, 12
 # A point counts as inside a face up to this barycentric coordinate beyond it: STL files keep six
 # digits, so that the edges of the paper lie within some 1e-4 mm of where they should.
 TOLERANCE = 0.02
-# Points that are searched for at a time, which bounds the memory.
-CHUNK = 128
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -185,10 +184,8 @@ def _find(
     """Find the faces around points (…, 2) of the plane z = `level`."""
     folded = np.stack([xy[..., 0], np.abs(xy[..., 1]) if mirrored else xy[..., 1]], axis=-1)
     flat = folded.reshape(-1, 2)
-    chunks = [flat[i : i + CHUNK] for i in range(0, len(flat), CHUNK)]
-    found = [_locate(chunk, points[faces[:, :3], :2]) for chunk in chunks]
-    face = np.concatenate([f for f, _ in found])
-    barycentric = np.concatenate([b for _, b in found])
+    face, barycentric = np.zeros(len(flat), np.int64), np.zeros((len(flat), 3))
+    _locate(flat, points[faces[:, :3], :2], face, barycentric)
     shape = xy.shape[:-1]
     return Points(
         reference=np.concatenate([xy, np.full((*shape, 1), level)], axis=-1),
@@ -199,17 +196,26 @@ def _find(
     )
 
 
-def _locate(xy: FloatArray, corners: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return face (m,) and barycentric coordinates (m, 3) of points (m, 2) in triangles (f, 3, 2).
+@compiled
+def _locate(xy: FloatArray, corners: FloatArray, face: IntArray, barycentric: FloatArray) -> None:
+    """Fill face (m,) and barycentric coordinates (m, 3) of points (m, 2) in triangles (f, 3, 2).
 
-    Of all the faces, the one whose least coordinate is largest.
+    Of all the faces, the first one whose least coordinate is largest.
     """
-    origin = corners[:, 0]
-    edges = np.stack([corners[:, 1] - origin, corners[:, 2] - origin], axis=-1)
-    rest = np.einsum("fij,mfj->mfi", np.linalg.inv(edges), xy[:, None] - origin)
-    every = np.concatenate([1.0 - rest.sum(axis=-1, keepdims=True), rest], axis=-1)
-    face = every.min(axis=-1).argmax(axis=1)
-    return face, every[np.arange(len(xy)), face]
+    best = np.full(len(xy), -np.inf)
+    for f in range(len(corners)):
+        x, y = corners[f, 0]
+        ax, ay = corners[f, 1, 0] - x, corners[f, 1, 1] - y
+        bx, by = corners[f, 2, 0] - x, corners[f, 2, 1] - y
+        area = ax * by - bx * ay
+        for m in range(len(xy)):
+            dx, dy = xy[m, 0] - x, xy[m, 1] - y
+            second, third = (dx * by - bx * dy) / area, (ax * dy - dx * ay) / area
+            least = min(1.0 - second - third, second, third)
+            if least > best[m]:
+                best[m], face[m] = least, f
+                barycentric[m, 0] = 1.0 - second - third
+                barycentric[m, 1], barycentric[m, 2] = second, third
 
 
 def _is_thin(strips: Points) -> BoolArray:

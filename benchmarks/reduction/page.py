@@ -36,6 +36,12 @@ def text_of(pairs: Sequence[Pair], wanted: int) -> str:
         _groups(pairs, _chambers),
         "By pressure:",
         _by_pressure(pairs),
+        wrapped(
+            "What is lacking at the ends: how much further the row turns in full than reduced, "
+            "from the clamp to the first gap and from the last gap to the tip, as a share of what "
+            "a chamber in the middle turns by; 10th percentile, median and 90th:"
+        ),
+        _ends(pairs),
         "How designs end, in full and reduced:",
         _statuses(pairs),
         wrapped(
@@ -154,6 +160,20 @@ def _by_pressure(pairs: Sequence[Pair]) -> str:
     return table(
         ["", "designs", "cells: tip", "cells: force", "pieces: tip", "pieces: force"], rows
     )
+
+
+def _ends(pairs: Sequence[Pair]) -> str:
+    rows = []
+    for mode in sorted({pair.mode for pair in pairs}):
+        for fidelity, words in _WORDS.items():
+            ends = [p.ends for p in pairs if p.mode == mode and p.fidelity == fidelity]
+            known = np.array([pair for pair in ends if np.isfinite(pair).all()]).reshape(-1, 2)
+            if not len(known):
+                continue
+            parts = np.percentile(known, [10, 50, 90], axis=0).T
+            cells = (" / ".join(f"{share:+.2f}" for share in part) for part in parts)
+            rows.append([f"{mode}, {words}", *cells])
+    return table(["", "first chamber", "last chamber"], rows)
 
 
 def _statuses(pairs: Sequence[Pair]) -> str:

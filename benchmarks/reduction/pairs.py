@@ -24,6 +24,8 @@ __all__ = ["Pair", "compared", "full_of"]
 _TIP = ("tip_x_mm", "tip_y_mm", "tip_z_mm")
 # Pressures (kPa) that agree to so many digits are one.
 _DIGITS = 6
+# A chamber that turns by less has no share to speak of.
+_TURNS_DEG = 0.05
 #: The first pressure at which errors by a displacement mean something.
 _FIRST_KPA = 5.0
 
@@ -35,6 +37,8 @@ class Pair:
     rows: one row a recorded pressure that both reached: pressure_kPa, tip_error (by the full tip's
     displacement), bending_deg, twist_deg and blocked_force_N of either. status: of either. doubt:
     why the reduced result is not trusted, if it is not.
+    ends: how much further the row turns in full than reduced, from the clamp to the first section
+    and from the last one to the tip, by what a chamber in the middle turns; bending, last state.
     cpu_s: of the reduced analysis, and of the full free actuation with its held tip.
     """
 
@@ -47,6 +51,7 @@ class Pair:
     status_full: str
     first_contact_kPa: float | None
     doubt: str | None
+    ends: tuple[float, float]
     cpu_s: float
     cpu_full_s: float
 
@@ -59,6 +64,7 @@ def full_of(folder: Path) -> dict[str, Any] | None:
     record, solved = read_record(folder / "metrics"), read_record(folder / "solve")
     return {
         "table": pd.read_parquet(metrics),
+        "trajectory": pd.read_parquet(folder / "metrics" / "trajectory.parquet"),
         "status": record.status.value,
         "cpu_s": sum(solved.timings_s.get(k, 0.0) for k in ("solve_cpu", "cells_cpu")),
     }
@@ -111,6 +117,7 @@ def _pair(task: tuple[NamedDesign, dict[str, Any], Any, Materials, str]) -> Pair
         status_full=full["status"],
         first_contact_kPa=row.get("first_contact_pressure_kPa"),
         doubt=doubt_of(row, named.design),
+        ends=_ends(pd.DataFrame(reduced.trajectory), full["trajectory"]),
         cpu_s=float(row["cpu_s"]),
         cpu_full_s=float(full["cpu_s"]),
     )
@@ -133,3 +140,18 @@ def _joined(reduced: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     with np.errstate(divide="ignore", invalid="ignore"):
         both["tip_error"] = np.linalg.norm(here - there, axis=1) / travel
     return both[both["pressure_kPa"] >= _FIRST_KPA].reset_index(drop=True)
+
+
+def _ends(reduced: pd.DataFrame, full: pd.DataFrame) -> tuple[float, float]:
+    if not len(reduced):
+        return np.nan, np.nan
+    tables = [side.assign(p=side["pressure_kPa"].round(_DIGITS)) for side in (reduced, full)]
+    last = max(set(tables[0]["p"]) & set(tables[1]["p"]))
+    mine, theirs = (
+        side[side["p"] == last].sort_values("station")["bending_deg"].diff().dropna().to_numpy()
+        for side in tables
+    )
+    middle = float(np.median(mine[1:-1]))
+    if not abs(middle) > _TURNS_DEG:
+        return np.nan, np.nan
+    return float(theirs[0] - mine[0]) / middle, float(theirs[-1] - mine[-1]) / middle

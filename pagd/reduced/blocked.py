@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +18,7 @@ from pagd.reduced.solve import ReducedRow
 
 FloatArray = NDArray[np.float64]
 
-__all__ = ["blocked_forces"]
+__all__ = ["Blocked", "blocked_forces"]
 
 # Compliances change slowly: they are computed at so many recorded pressures, evenly spread from the
 # first to the last.
@@ -26,10 +27,20 @@ _PRESSURES = 3
 _HALVINGS = 4
 
 
-def blocked_forces(reduced: ReducedRow, channel: Channel) -> FloatArray:
-    """The force on the support in N, positive towards −z, at all pressures (p,).
+@dataclass(frozen=True, eq=False, slots=True)
+class Blocked:
+    """What holds the tip at all pressures; not a number from where on no equilibrium was found.
 
-    Not a number from where on no equilibrium of the held row was found.
+    force_N: (p,) on the support, positive towards −z.
+    turned_deg: (p,) by how much the moments turn the joint that they turn most.
+    """
+
+    force_N: FloatArray
+    turned_deg: FloatArray
+
+
+def blocked_forces(reduced: ReducedRow, channel: Channel) -> Blocked:
+    """The force on the support of the held tip, and how far cells are turned against their shape.
 
     Raises
     ------
@@ -42,27 +53,28 @@ def blocked_forces(reduced: ReducedRow, channel: Channel) -> FloatArray:
         for kind, cell in reduced.cells.items()
     }
     known = _compliances(reduced, row, answers)
-    forces = np.full(len(reduced.pressure_kPa), np.nan)
-    forces[0] = 0.0
+    forces, turned = np.full((2, len(reduced.pressure_kPa)), np.nan)
+    forces[0] = turned[0] = 0.0
     held = _Held(reduced, row, known)
     for number, pressure in enumerate(reduced.pressure_kPa[1:], 1):
         if not held.go_on_to(float(pressure)):
             break
-        forces[number] = held.force
-    return forces
+        forces[number], turned[number] = held.force, np.degrees(held.turned)
+    return Blocked(forces, turned)
 
 
 class _Held:
     """The row with its tip held, at rising pressures.
 
-    force: in N, and moments: (N − 1, 3) between the cells in N mm, of the last equilibrium found.
+    force: in N, moments: (N − 1, 3) between the cells in N mm, and turned: the largest rotation of
+    a joint by its moment in radians, of the last equilibrium found.
     """
 
     def __init__(self, reduced: ReducedRow, row: Row, known: Mapping[bool, Loaded]) -> None:
         self._reduced, self._row, self.known = reduced, row, known
         self._pressure = 0.0
         self._unknowns: FloatArray | None = None
-        self.force = 0.0
+        self.force = self.turned = 0.0
         self.moments = np.zeros((reduced.design.N - 1, 3))
 
     def go_on_to(self, pressure_kPa: float, halvings: int = _HALVINGS) -> bool:
@@ -77,6 +89,7 @@ class _Held:
         found = held_force(rod, start)
         if found is not None:
             self._pressure, (self.force, self._unknowns) = pressure_kPa, found
+            self.turned = rod.turned_most(self._unknowns)
             self.moments = rod.moments(self._unknowns)[-len(self.moments) :]
             return True
         between = 0.5 * (self._pressure + pressure_kPa)

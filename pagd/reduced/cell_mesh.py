@@ -45,7 +45,7 @@ class CellMesh:
     def base_at(self, plane: float, height: float) -> IntArray:
         """Nodes (k,) of the base, up to a height (mm), on the plane x = ``plane`` + skew y."""
         nodes = nodes_on(self.mesh.points, plane, self.skew)
-        return nodes[self.mesh.points[nodes, 2] <= height + _SAME_PLACE]
+        return np.asarray(nodes[self.mesh.points[nodes, 2] <= height + _SAME_PLACE])
 
 
 def cell_mesh(

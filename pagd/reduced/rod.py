@@ -20,6 +20,16 @@ from pagd.reduced.rod_kernels import shape, unbalanced
 from pagd.rigid import RigidMotion
 
 FloatArray = NDArray[np.float64]
+_Arrays = tuple[
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    FloatArray,
+    FloatArray,
+]
 
 __all__ = ["Rod", "held_force"]
 
@@ -65,12 +75,12 @@ class Rod:
         are heights of the edge in mm, then moments.
         """
         arrays, joints = self._arrays(), len(self.centres)
+        turned, balance = np.empty((joints, 3)), np.empty((joints, 3))
         cells, cuts, ends = np.empty((joints, 3, 3)), np.empty((joints, 3)), np.empty((2, 3))
-        balance = np.empty((joints, 3))
 
         def lacking(unknowns: FloatArray) -> FloatArray:
             forces, moments = self._split(unknowns)
-            shape(*arrays, moments, cells, cuts, ends)
+            shape(*arrays, moments, turned, cells, cuts, ends)
             unbalanced(cells, cuts, ends, forces, moments, balance)
             heights = ends[:, 2] - self.height
             if self.is_planar:
@@ -79,7 +89,7 @@ class Rod:
 
         return lacking
 
-    def _arrays(self) -> tuple[FloatArray, ...]:
+    def _arrays(self) -> _Arrays:
         """What of the rod :func:`pagd.reduced.rod_kernels.shape` is given first."""
         moments = np.stack([each.moment for each in self.compliances])
         squares = (moments**2).sum(axis=1, keepdims=True)
@@ -112,6 +122,14 @@ class Rod:
     def moments(self, unknowns: FloatArray) -> FloatArray:
         """The moments (j, 3) at the joints in N mm."""
         return self._split(unknowns)[1]
+
+    def turned_most(self, unknowns: FloatArray) -> float:
+        """The largest rotation of a joint by its moment, in radians."""
+        joints = len(self.centres)
+        turned, cuts = np.empty((joints, 3)), np.empty((joints, 3))
+        cells, ends = np.empty((joints, 3, 3)), np.empty((2, 3))
+        shape(*self._arrays(), self.moments(unknowns), turned, cells, cuts, ends)
+        return float(np.linalg.norm(turned, axis=1).max())
 
     def force(self, unknowns: FloatArray) -> float:
         """The force on the support in N, positive towards −z."""

@@ -69,11 +69,14 @@ def shape(
     share: FloatArray,
     edge: FloatArray,
     moments: FloatArray,
+    turned: FloatArray,
     cells: FloatArray,
     cuts: FloatArray,
     ends: FloatArray,
 ) -> None:
-    """Fill rotations (j, 3, 3) of the cells, centres (j, 3) of the cuts and the edge (2, 3).
+    """Fill rotation vectors (j, 3) of the joints by their moments, and where the chain is then.
+
+    Rotations (j, 3, 3) of the cells, centres (j, 3) of the cuts and the edge (2, 3).
 
     Parameters
     ----------
@@ -91,17 +94,16 @@ def shape(
         (j, 3) at the joints, in coordinates of the cell before.
     """
     rotation, place = base[:, :3].copy(), base[:, 3].copy()
-    turned, further = np.empty(3), np.empty((3, 3))
-    joint, next_rotation = np.empty((3, 3)), np.empty((3, 3))
-    behind = np.empty(3)
+    further, joint = np.empty((3, 3)), np.empty((3, 3))
+    next_rotation, behind = np.empty((3, 3)), np.empty(3)
     for k in range(len(rotations)):
         cells[k] = rotation
         for a in range(3):
-            turned[a] = _answer(without[k], change[k], share[k], moments[k], a)
+            turned[k, a] = _answer(without[k], change[k], share[k], moments[k], a)
             cuts[k, a] = place[a]
             for b in range(3):
                 cuts[k, a] += rotation[a, b] * centres[k, b]
-        _rotation(turned, further)
+        _rotation(turned[k], further)
         _product(further, rotations[k], joint)
         for a in range(3):
             aside = _answer(without[k], change[k], share[k], moments[k], 3 + a)

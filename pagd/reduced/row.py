@@ -32,8 +32,8 @@ __all__ = ["Group", "PieceShape", "Row", "unlike_their_neighbours"]
 _SAME_PLACE = 1e-4
 
 # The wall of a straight chamber that is clamped does not bulge: from the clamp to the first cut the
-# row turns by so much of what a cell does. Measured by the pieces of random designs, of which it is
-# the median (benchmarks/reduced.py); a slanted chamber's wall is free but for its edge.
+# row turns by about so much of what a cell does. Of random designs this brings the tips nearest to
+# the full model's (benchmarks/reduced.py). A slanted chamber's wall is free but for its edge.
 _FREE_SHARE = 0.68
 
 

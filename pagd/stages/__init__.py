@@ -17,7 +17,7 @@ STAGE_VERSIONS = {
     "mesh": 3,
     "solve": 11,
     "metrics": 5,
-    "screening": 3,
+    "screening": 4,
     "fronts": 1,
     "figures": 3,
     "generative_figures": 3,

@@ -1,9 +1,9 @@
 """Which result of a simpler analysis is to be trusted, and what is run where none is.
 
-Cells alone leave out that the ends of a row are unlike its middle. Pieces leave out what is not
-periodic. Neither knows its error. What is doubted are the cases that the formulation leaves out, as
-far as they show at no cost; how little that tells of the error so far, ``benchmarks/reduced.py``
-prints.
+Cells alone leave out that the ends of a row are unlike its middle, and what is known of a chamber's
+answer to a moment is known near its free shape. Neither cells nor pieces know their error. What is
+doubted is what had the largest errors among designs that were solved in full; the limits are those
+that part them best, and ``benchmarks/reduced.py`` prints how well they do.
 """
 
 from __future__ import annotations
@@ -42,10 +42,11 @@ FAULTS: Final = (
 
 __all__ = ["FAULTS", "doubt_of", "full_analysis", "gated"]
 
-# With fewer chambers the ends are too much of a row for cells alone.
+# With fewer chambers the ends are too much of a row for cells alone; of slanted ones more so.
 _FEW: Final = 6
-# Degrees: held tips of rows that would bend further are too far from their free shape.
-_FAR: Final = 150.0
+_FEW_SLANTED: Final = 7
+# Degrees: a held tip that turns a chamber by more than this is too far from its free shape.
+_FAR: Final = 15.0
 _REACHED: Final = (Status.ok.value, Status.bending_limit.value, Status.no_actuation.value)
 # What no other analysis would change.
 _FINAL: Final = (Status.invalid_geometry.value,)
@@ -70,16 +71,14 @@ def doubt_of(row: Mapping[str, Any], design: Design, held: str = "edge") -> str 
         return "Parts of a row meet no plate: they have no such blocked force."
     if status not in _REACHED:
         return f"The reduced analysis ends as {status}."
-    if row["fidelity"] == "cells" and design.N < _FEW:
+    enough = design.N >= (_FEW if design.is_straight else _FEW_SLANTED)
+    if row["fidelity"] == "cells" and not enough:
         return f"Of {design.N} chambers the ends are too much for cells alone."
-    contact = row.get("first_contact_pressure_kPa")
-    if row["fidelity"] == "cells" and contact is not None:
-        return f"Walls touch from {contact:.3g} kPa on, not alike in all chambers."
     if row.get("blocked_force_status") not in (None, Status.ok.value):
         return "No blocked force was found at the last pressure."
-    bending = row.get("bending_deg")
-    if row.get("blocked_force_N") is not None and bending is not None and abs(bending) > _FAR:
-        return f"A row that bends by {bending:.0f}° is held far from its free shape."
+    turned = row.get("held_turn_deg")
+    if turned is not None and turned > _FAR:
+        return f"The held tip turns a chamber by {turned:.0f}°, far from its free shape."
     return None
 
 

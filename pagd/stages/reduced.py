@@ -31,7 +31,7 @@ from pagd.metrics import (
     performance,
     strain_columns,
 )
-from pagd.reduced.blocked import blocked_forces
+from pagd.reduced.blocked import Blocked, blocked_forces
 from pagd.reduced.history import row_history, row_strains
 from pagd.reduced.solve import ReducedRow, solve_row
 from pagd.sections import stations_of
@@ -198,15 +198,15 @@ def _measured(
         performance(trajectory, history, solid_volume(design, rules), thresholds)
     )
     measures |= strain_columns(reduced.pressure_kPa, *row_strains(reduced), ramp)
-    forces = _forces(reduced, rules.channel, actuation)
-    measures["blocked_force_N"] = forces
+    blocked = _blocked(reduced, rules.channel, actuation)
+    measures["blocked_force_N"] = blocked.force_N
     row |= {key: _plain(values[-1]) for key, values in measures.items()}
     row["largest_pressure_kPa"] = float(reduced.pressure_kPa[-1])
     row["first_contact_pressure_kPa"] = first_contact_pressure(
         history["pressure_kPa"], history["smallest_gap_mm"], ContactLaw().width
     )
     row["newton_iterations"] = reduced.factorisations
-    row |= _force_row(reduced.pressure_kPa, forces, actuation)
+    row |= _force_row(reduced.pressure_kPa, blocked, actuation)
     if is_still(row["bending_deg"], row["twist_deg"], thresholds) and row["status"] == "ok":
         row |= {
             "status": Status.no_actuation.value,
@@ -221,9 +221,9 @@ def _measured(
     return tables
 
 
-def _forces(reduced: ReducedRow, channel: Channel, actuation: Actuation) -> FloatArray:
-    """The blocked force at all pressures; not a number where there is none."""
-    nothing = np.full(len(reduced.pressure_kPa), np.nan)
+def _blocked(reduced: ReducedRow, channel: Channel, actuation: Actuation) -> Blocked:
+    """What holds the tip at all pressures; not a number where nothing does."""
+    nothing = Blocked(*np.full((2, len(reduced.pressure_kPa)), np.nan))
     if actuation.blocked_force != "edge" or reduced.design.N < 2:
         return nothing
     try:
@@ -232,9 +232,8 @@ def _forces(reduced: ReducedRow, channel: Channel, actuation: Actuation) -> Floa
         return nothing
 
 
-def _force_row(
-    pressure_kPa: FloatArray, forces: FloatArray, actuation: Actuation
-) -> dict[str, Any]:
+def _force_row(pressure_kPa: FloatArray, blocked: Blocked, actuation: Actuation) -> dict[str, Any]:
+    forces = blocked.force_N
     known = np.flatnonzero(np.isfinite(forces[1:])) + 1
     if actuation.blocked_force != "edge" or len(forces) < 2:
         return {"blocked_force_N": None}
@@ -248,6 +247,7 @@ def _force_row(
         "blocked_force_pressure_kPa": float(pressure_kPa[last]),
         "blocked_force_variant": "edge",
         "blocked_force_status": status.value,
+        "held_turn_deg": float(blocked.turned_deg[last]),
     }
 
 

@@ -87,6 +87,12 @@ PERFORMANCE = (
     Column("blocked_force_variant", "string", "", "edge: the tip is held; plate: it meets a plate"),
     Column("blocked_force_status", "string", "", "how the analysis of the blocked force ended"),
     Column(
+        "held_turn_deg",
+        "double",
+        "deg",
+        "largest turn of a chamber by the held tip, of cells and pieces",
+    ),
+    Column(
         "first_contact_pressure_kPa",
         "double",
         "kPa",

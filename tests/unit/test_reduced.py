@@ -173,7 +173,7 @@ def test_a_first_guess_from_parts_leads_to_the_same_states() -> None:
 def test_blocked_force_is_near_that_of_the_whole(design: Design) -> None:
     held = blocked_force(mesh_of(design), ELASTOMER, PAPER, ACTUATION)
     wanted = held.history["blocked_force_N"][held.history["recorded"]]
-    found = blocked_forces(solved(design, pieces=False), CHANNEL)
+    found = blocked_forces(solved(design, pieces=False), CHANNEL).force_N
     assert len(found) == len(wanted)
     np.testing.assert_allclose(found[1:], wanted[1:], rtol=0.2)
 
@@ -240,7 +240,7 @@ def test_a_chain_of_joints_by_its_formulas() -> None:
 
 def test_a_pressure_too_far_is_come_to_by_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     reduced = solved(STRAIGHT, pieces=False)
-    wanted = blocked_forces(reduced, CHANNEL)
+    wanted = blocked_forces(reduced, CHANNEL).force_N
     starts: list[bool] = []
 
     def only_near(rod: Rod, guess: np.ndarray | None = None) -> tuple[float, np.ndarray] | None:
@@ -252,7 +252,7 @@ def test_a_pressure_too_far_is_come_to_by_steps(monkeypatch: pytest.MonkeyPatch)
         return found if near else None
 
     monkeypatch.setattr(blocked, "held_force", only_near)
-    np.testing.assert_allclose(blocked_forces(reduced, CHANNEL), wanted, rtol=1e-6)
+    np.testing.assert_allclose(blocked_forces(reduced, CHANNEL).force_N, wanted, rtol=1e-6)
     assert not all(starts)
 
 
@@ -265,9 +265,10 @@ def test_what_a_cell_does_not_bear_changes_it_as_before() -> None:
 def test_fewer_recorded_pressures_than_compliances_do() -> None:
     whole = solved(STRAIGHT, pieces=False)
     two = replace(whole, pressure_kPa=whole.pressure_kPa[:2])
-    forces = blocked_forces(two, CHANNEL)
-    assert forces.shape == (2,)
-    assert forces[1] > 0
+    found = blocked_forces(two, CHANNEL)
+    assert found.force_N.shape == found.turned_deg.shape == (2,)
+    assert found.force_N[1] > 0
+    assert found.turned_deg[1] > 0
 
 
 def test_a_cell_that_a_design_does_not_have_is_refused() -> None:
