@@ -39,7 +39,7 @@ class Pair:
     why the reduced result is not trusted, if it is not.
     ends: how much further the row turns in full than reduced, from the clamp to the first section
     and from the last one to the tip, by what a chamber in the middle turns; bending, last state.
-    cpu_s: of the reduced analysis, and of the full free actuation with its held tip.
+    cpu_s: of the reduced analysis, and of all stages of the full one.
     """
 
     name: str
@@ -61,12 +61,12 @@ def full_of(folder: Path) -> dict[str, Any] | None:
     metrics = folder / "metrics" / "performance.parquet"
     if not metrics.is_file():
         return None
-    record, solved = read_record(folder / "metrics"), read_record(folder / "solve")
+    record = read_record(folder / "metrics")
     return {
         "table": pd.read_parquet(metrics),
         "trajectory": pd.read_parquet(folder / "metrics" / "trajectory.parquet"),
         "status": record.status.value,
-        "cpu_s": sum(solved.timings_s.get(k, 0.0) for k in ("solve_cpu", "cells_cpu")),
+        "cpu_s": float(record.figures["cpu_s"]),
     }
 
 
