@@ -25,7 +25,7 @@ from pagd.errors import Status
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-__all__ = ["OBJECTIVES", "compare", "not_dominated", "reached", "values_of"]
+__all__ = ["OBJECTIVES", "compare", "known", "not_dominated", "reached", "values_of"]
 
 #: What a design is to be good at: column of the table of performance, and its words.
 OBJECTIVES: Final[Mapping[str, str]] = {
@@ -34,6 +34,8 @@ OBJECTIVES: Final[Mapping[str, str]] = {
     "blocked_force_N": "blocked force",
 }
 
+# What a doubt of cells is about.
+_DOUBTED: Final = ("blocked_force_N",)
 # To either side is as good.
 _EITHER_SIDE: Final = ("twist_deg",)
 # What ended so is an equilibrium that the actuator comes to.
@@ -51,8 +53,8 @@ def compare(
 ) -> dict[str, Any]:
     """Compare what training and generated designs can do, by all objectives and by each two.
 
-    A design that does not come to its end counts as one that does nothing. An objective that no
-    design of a kind has is left out.
+    A design that does not come to its end counts as one that does nothing, and so does a blocked
+    force that the gate doubts. An objective that no design of a kind has is left out.
 
     Parameters
     ----------
@@ -75,8 +77,8 @@ def compare(
         than two objectives, or a volume of nothing.
     """
     sets = {"training": training, "generated": generated}
-    known = [name for name in OBJECTIVES if all(_has(frame, name) for frame in sets.values())]
-    several = [names for size in range(len(known), 1, -1) for names in combinations(known, size)]
+    some = [name for name in OBJECTIVES if all(_has(frame, name) for frame in sets.values())]
+    several = [names for size in range(len(some), 1, -1) for names in combinations(some, size)]
     drawn = int(min(map(len, sets.values())) * _SHARE)
     found = [
         _comparison(sets, names, np.random.default_rng([seed, number]), drawn, repeats)
@@ -98,13 +100,32 @@ def reached(frame: pd.DataFrame) -> pd.DataFrame:
 def values_of(frame: pd.DataFrame, names: Sequence[str]) -> FloatArray:
     """What designs reach by objectives (n, m), at least 0; twist to either side.
 
-    0 for what is not known, and of designs that did not come to their end.
+    0 for what is not known or doubted, and of designs that did not come to their end.
     """
-    values = frame[list(names)].apply(pd.to_numeric, errors="coerce").to_numpy(dtype=np.float64)
+    values = _known(frame, names)
     either = np.isin(list(names), _EITHER_SIDE)
     sizes = np.where(either, np.abs(values), np.maximum(values, 0.0))
     ended = frame["status"].isin(_REACHED).to_numpy()
     return np.asarray(np.nan_to_num(sizes) * ended[:, None], dtype=np.float64)
+
+
+def known(frame: pd.DataFrame, names: Sequence[str]) -> BoolArray:
+    """Which rows (n,) have all of some objectives, none of them doubted."""
+    return np.asarray(np.isfinite(_known(frame, names)).all(axis=1), dtype=np.bool_)
+
+
+def _known(frame: pd.DataFrame, names: Sequence[str]) -> FloatArray:
+    """The objectives (n, m) as they are in the table; not a number where unknown or doubted.
+
+    What is doubtful of cells is their blocked force: it would be by its errors that a design is
+    best (:mod:`pagd.stages.gate`).
+    """
+    numbers = frame[list(names)].apply(pd.to_numeric, errors="coerce")
+    values = np.array(numbers, dtype=np.float64)
+    if "doubt" in frame:
+        doubted = (frame["doubt"].notna() & (frame["fidelity"] == "cells")).to_numpy()
+        values[np.ix_(doubted, np.isin(list(names), _DOUBTED))] = np.nan
+    return values
 
 
 def not_dominated(values: FloatArray) -> BoolArray:

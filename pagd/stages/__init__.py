@@ -18,9 +18,9 @@ STAGE_VERSIONS = {
     "solve": 11,
     "metrics": 5,
     "screening": 4,
-    "fronts": 1,
+    "fronts": 2,
     "figures": 3,
-    "generative_figures": 3,
+    "generative_figures": 4,
     "summary": 5,
-    "report": 5,
+    "report": 6,
 }

@@ -71,8 +71,8 @@ def doubt_of(row: Mapping[str, Any], design: Design, held: str = "edge") -> str 
         return "Parts of a row meet no plate: they have no such blocked force."
     if status not in _REACHED:
         return f"The reduced analysis ends as {status}."
-    enough = design.N >= (_FEW if design.is_straight else _FEW_SLANTED)
-    if row["fidelity"] == "cells" and not enough:
+    fewest = _FEW if design.is_straight else _FEW_SLANTED
+    if row["fidelity"] == "cells" and fewest > design.N:
         return f"Of {design.N} chambers the ends are too much for cells alone."
     if row.get("blocked_force_status") not in (None, Status.ok.value):
         return "No blocked force was found at the last pressure."

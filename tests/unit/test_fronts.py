@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pagd.fronts import compare, not_dominated, values_of
+from pagd.fronts import compare, known, not_dominated, values_of
 
 ALL = ["bending_deg", "twist_deg", "blocked_force_N"]
 
@@ -40,6 +40,16 @@ def test_twist_counts_to_either_side_and_what_goes_the_other_way_is_nothing() ->
     rows = table([(-3, -2, None), (3, 2, -1)])
     assert values_of(rows, ALL) == pytest.approx(np.array([[0.0, 2.0, 0.0], [3.0, 2.0, 0.0]]))
     assert not values_of(rows.assign(status="not_converged"), ALL).any()
+
+
+def test_a_doubted_force_of_cells_is_none_and_the_rest_stays() -> None:
+    rows = table([(3, 2, 1), (3, 2, 1), (3, 2, 1)]).assign(
+        doubt=["Far.", None, "Far."], fidelity=["cells", "cells", "pieces"]
+    )
+    assert values_of(rows, ALL) == pytest.approx(np.array([[3, 2, 0], [3, 2, 1], [3, 2, 1]]))
+    assert known(rows, ALL).tolist() == [False, True, True]
+    assert known(rows, ALL[:2]).all()
+    assert known(table([(1, None, 2)]), ALL).tolist() == [False]
 
 
 def test_designs_that_are_all_alike_have_the_ratio_of_their_boxes() -> None:

@@ -18,7 +18,7 @@ from pagd.figures.generative.results import (
     table_or_none,
 )
 from pagd.figures.style import FAINT, INK, mode_look, new_figure, number, save
-from pagd.fronts import OBJECTIVES, not_dominated, reached, values_of
+from pagd.fronts import OBJECTIVES, known, not_dominated, reached, values_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -85,8 +85,10 @@ def screened_figure(generated: pd.DataFrame, training: pd.DataFrame) -> Figure:
     pairs = list(combinations(OBJECTIVES, 2))
     for axes, pair in zip(figure.subplots(1, len(pairs)), pairs, strict=True):
         old, new = values_of(training, pair), values_of(generated, pair)
-        axes.scatter(old[:, 0], old[:, 1], s=5, c=_GREY, marker="o", linewidths=0, zorder=1)
-        _draw_modes(axes, generated, new)
+        shown = old[known(training, pair)]
+        axes.scatter(shown[:, 0], shown[:, 1], s=5, c=_GREY, marker="o", linewidths=0, zorder=1)
+        some = known(generated, pair)
+        _draw_modes(axes, generated[some], new[some])
         _draw_front(axes, old, FAINT)
         _draw_front(axes, new, INK)
         axes.set(xlabel=_label(pair[0]), ylabel=_label(pair[1]), xlim=(0, None), ylim=(0, None))
@@ -121,9 +123,11 @@ def screened_novelty_figure(screened: pd.DataFrame, full: pd.DataFrame | None) -
     """
     figure = new_figure(13.0, 5.0)
     for axes, name in zip(figure.subplots(1, len(OBJECTIVES)), OBJECTIVES, strict=True):
-        both = _both(screened, full, name)
-        values = np.column_stack([screened["novelty"], values_of(screened, [name])])
-        _draw_modes(axes, screened, values)
+        # Beside its full analysis a doubted result is of interest too.
+        both = _both(screened, full, name).assign(doubt=None)
+        some = screened[known(screened, [name])]
+        values = np.column_stack([some["novelty"], values_of(some, [name])])
+        _draw_modes(axes, some, values)
         if len(both):
             whole = values_of(both.assign(**{name: both[f"{name}_full"]}), [name])[:, 0]
             cells = values_of(both, [name])[:, 0]
@@ -205,8 +209,8 @@ def _both(screened: pd.DataFrame, full: pd.DataFrame | None, name: str) -> pd.Da
     both = sides[0].merge(
         sides[1][["design_id", *columns]], "inner", "design_id", suffixes=("", "_full")
     )
-    known = both[columns + [f"{key}_full" for key in columns]].notna().all(axis=1)
-    return both[known & np.isclose(both[pressure], both[f"{pressure}_full"])]
+    complete = both[columns + [f"{key}_full" for key in columns]].notna().all(axis=1)
+    return both[complete & np.isclose(both[pressure], both[f"{pressure}_full"])]
 
 
 def _draw_modes(axes: Axes, frame: pd.DataFrame, values: np.ndarray, size: float = 9.0) -> None:

@@ -16,10 +16,12 @@ __all__ = ["answer_of", "screening"]
 
 _NOTE: Final = """<p class="note">Every design is one chamber of an endless row, which costs
 seconds, not a minute; how far that is from the full analysis tells docs/reduced-order.md. Mixed
-designs, all of them generated, have errors of their own, where chambers change; a gate tells which
-results are doubtful. The volume is that of all combinations of the objectives that a design of a
-draw reaches or exceeds; in brackets the middle 95 % of the draws. p is how often labels given at
-random make as much of a difference. Designs that fail count as designs that do nothing.</p>"""
+designs, all of them generated, have errors of their own, where chambers change. A gate tells
+whose blocked force is doubtful: far from their free shape, as those that curl most are. Such
+forces count as none, and are not drawn. The volume is that of all combinations of the objectives
+that a design of a draw reaches or exceeds; in brackets the middle 95 % of the draws. p is how
+often labels given at random make as much of a difference. Designs that fail count as designs that
+do nothing.</p>"""
 # Differences that labels given at random make more rarely are called certain.
 _CERTAIN: Final = 0.05
 
