@@ -247,7 +247,8 @@ def _force_row(pressure_kPa: FloatArray, blocked: Blocked, actuation: Actuation)
         "blocked_force_pressure_kPa": float(pressure_kPa[last]),
         "blocked_force_variant": "edge",
         "blocked_force_status": status.value,
-        "held_turn_deg": float(blocked.turned_deg[last]),
+        # A row that curls into a loop can be held with less again, on another branch.
+        "held_turn_deg": float(np.nanmax(blocked.turned_deg)),
     }
 
 

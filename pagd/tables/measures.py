@@ -90,7 +90,7 @@ PERFORMANCE = (
         "held_turn_deg",
         "double",
         "deg",
-        "largest turn of a chamber by the held tip, of cells and pieces",
+        "largest turn of a chamber by the held tip, at any pressure; of cells and pieces",
     ),
     Column(
         "first_contact_pressure_kPa",
