@@ -283,6 +283,21 @@ def test_forces_that_none_were_found_of_are_told(
     assert row["doubt"] is not None
 
 
+def test_the_largest_turn_at_any_pressure_is_doubted(
+    table: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def looping(row: ReducedRow, *_: object) -> Blocked:
+        pressures = row.pressure_kPa
+        turned = np.where(pressures == pressures[1], 30.0, 5.0)
+        return Blocked(0.01 * pressures, turned)
+
+    monkeypatch.setattr(reduced, "blocked_forces", looping)
+    assert screened(table, tmp_path / "out") == 0
+    row = read_rows(tmp_path / "out" / "performance.parquet")[1]
+    assert (row["held_turn_deg"], row["blocked_force_N"]) == (30.0, pytest.approx(0.1))
+    assert row["doubt"] is not None
+
+
 def test_gated_batches_are_those_of_their_full_analyses_too(table: Path, tmp_path: Path) -> None:
     assert screened(table, tmp_path / "out", "--fidelity", "gated") == 0
     assert {"geometry", "repair", "solve"} <= set(read_record(tmp_path / "out").configuration)
