@@ -3,6 +3,7 @@
     python benchmarks/random_designs.py [--designs 200] [--seed 1] [--size MM] [--processes 2]
         [--time-limit 1800] [--config JSON] [--out results/random_designs]
         [--error-designs 20] [--markdown FILE] [--page docs/performance.md] [--report-only]
+        [--mixed]
 
 Each design has a process of its own. Repeating the command runs only what is not finished yet by
 stages of the same versions; designs of more than one commit are told in the report. To run all
@@ -27,7 +28,7 @@ from typing import Any
 from performance.origin import origin_lines
 from performance.page import must_have_section, write_section
 from robustness.costs import COST_KEYS, as_section
-from robustness.drawing import drawn_designs
+from robustness.drawing import drawn_designs, mixed_designs
 from robustness.errors import TipError, finer_study, tip_error
 from robustness.machine import machine
 from robustness.page import as_markdown
@@ -76,7 +77,8 @@ def _study(options: argparse.Namespace) -> Study:
     config = configuration.load(options.config)
     if options.size is not None:
         config = sized(config, options.size)
-    return Study(options.out, drawn_designs(options.designs, options.seed, config), config)
+    draw = mixed_designs if options.mixed else drawn_designs
+    return Study(options.out, draw(options.designs, options.seed, config), config)
 
 
 def _error_designs(options: argparse.Namespace) -> int:
@@ -169,7 +171,10 @@ def _section(
 
 
 #: Options that change what is on the page, or where it is written to.
-_REPEATED = ("designs", "seed", "size", "time_limit", "config", "error_designs", "markdown", "page")
+_REPEATED = (
+    *("designs", "seed", "mixed", "size", "time_limit", "config"),
+    *("error_designs", "markdown", "page"),
+)
 
 
 def _command(options: argparse.Namespace) -> str:
@@ -178,7 +183,9 @@ def _command(options: argparse.Namespace) -> str:
     lines = ["python benchmarks/random_designs.py"]
     for name in _REPEATED:
         value = getattr(options, name)
-        if value != getattr(usual, name):
+        if value is True:
+            lines.append(f"--{name}")
+        elif value != getattr(usual, name):
             text = f"{value:.12g}" if isinstance(value, float) else str(value)
             lines.append(f"--{name.replace('_', '-')} {shlex.quote(text)}")
     return " \\\n  ".join(lines)
@@ -189,6 +196,7 @@ def _parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("--designs", type=int, default=200, help="how many (default: %(default)s)")
     add("--seed", type=int, default=1, help="of the drawing (default: %(default)s)")
+    add("--mixed", action="store_true", help="draw rows of slanted and straight chambers")
     add("--size", type=float, help="mesh size in mm (default: those of the configuration)")
     add("--processes", type=int, default=2, help="designs at a time (default: %(default)s)")
     add(

@@ -34,7 +34,7 @@ OBJECTIVES: Final[Mapping[str, str]] = {
     "blocked_force_N": "blocked force",
 }
 
-# What a doubt of cells is about.
+# What a doubt of cells is about; their tips are near those of the full analysis anyway.
 _DOUBTED: Final = ("blocked_force_N",)
 # To either side is as good.
 _EITHER_SIDE: Final = ("twist_deg",)
@@ -68,13 +68,14 @@ def compare(
     Returns
     -------
     dict
-        ``training`` and ``generated``, how many there are; ``drawn``, how many of either a draw
-        has; ``comparisons``, each with ``objectives``, ``ratio`` (the volume of the generated
-        designs by that of the training designs, median of the draws), ``low`` and ``high`` (the
-        middle 95 % of the draws), ``p`` (of the permutation test, two-sided), ``share`` (mean share
-        of generated designs in the front of a draw), ``front`` (all designs that none of all
-        dominates, by kind and mode) and ``front_designs``. None are left where there are fewer
-        than two objectives, or a volume of nothing.
+        ``training`` and ``generated``, how many there are; ``known``, by objective and kind of how
+        many it is known and not doubted; ``drawn``, how many of either a draw has; ``comparisons``,
+        each with ``objectives``, ``ratio`` (the volume of the generated designs by that of the
+        training designs, median of the draws), ``low`` and ``high`` (the middle 95 % of the draws),
+        ``p`` (of the permutation test, two-sided), ``share`` (mean share of generated designs in
+        the front of a draw), ``front`` (all designs that none of all dominates, by kind and mode)
+        and ``front_designs``. None are left where there are fewer than two objectives, or a volume
+        of nothing.
     """
     sets = {"training": training, "generated": generated}
     some = [name for name in OBJECTIVES if all(_has(frame, name) for frame in sets.values())]
@@ -87,6 +88,10 @@ def compare(
     ]
     return {
         **{kind: len(frame) for kind, frame in sets.items()},
+        "known": {
+            name: {kind: int(known(reached(frame), [name]).sum()) for kind, frame in sets.items()}
+            for name in some
+        },
         "drawn": drawn,
         "comparisons": [each for each in found if each],
     }

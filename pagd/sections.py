@@ -184,7 +184,8 @@ def _find(
     """Find the faces around points (…, 2) of the plane z = `level`."""
     folded = np.stack([xy[..., 0], np.abs(xy[..., 1]) if mirrored else xy[..., 1]], axis=-1)
     flat = folded.reshape(-1, 2)
-    face, barycentric = np.zeros(len(flat), np.int64), np.zeros((len(flat), 3))
+    # Points that no face is found for count as outside.
+    face, barycentric = np.zeros(len(flat), np.int64), np.full((len(flat), 3), -1.0)
     _locate(flat, points[faces[:, :3], :2], face, barycentric)
     shape = xy.shape[:-1]
     return Points(

@@ -20,15 +20,32 @@ _WORDS = {CELLS: "cells alone", PIECES: "cells and pieces"}
 _FORCES = "blocked_force_N"
 
 
-def text_of(pairs: Sequence[Pair], wanted: int) -> str:
-    """The section: all designs, by mode, by pressure, by number of chambers, statuses, worst."""
-    parts = [
+def text_of(pairs: Sequence[Pair], wanted: int, *, brief: bool = False) -> str:
+    """The section: all designs, by mode, by pressure, by number of chambers, statuses, worst.
+
+    A ``brief`` one has all designs, how they end, and what the gate makes of them.
+    """
+    introduction = wrapped(
+        f"{len({pair.name for pair in pairs})} of {wanted} random designs that were solved in "
+        "full; errors are those of the last recorded pressure that both reached, unless it is "
+        "told. The error of a tip is its distance from that of the full model by the latter's "
+        "displacement."
+    )
+    ends = ["How designs end, in full and reduced:", _statuses(pairs)]
+    gate = [
         wrapped(
-            f"{len({pair.name for pair in pairs})} of {wanted} random designs that were solved in "
-            "full; errors are those of the last recorded pressure that both reached, unless it is "
-            "told. The error of a tip is its distance from that of the full model by the latter's "
-            "displacement."
+            "What the gate makes of them. Gated: cells where they are trusted, else pieces where "
+            "they are, else the full analysis, whose errors count as none and whose seconds are "
+            "those of the study:"
         ),
+        _gate(pairs),
+        "Why cells alone, and pieces, are not trusted:",
+        _doubts(pairs),
+    ]
+    if brief:
+        return "\n\n".join([introduction, _all(pairs), *ends, *gate])
+    parts = [
+        introduction,
         _all(pairs),
         "By mode, last pressure, median and 90th percentile of the tip's error:",
         _groups(pairs, lambda pair: pair.mode),
@@ -42,16 +59,8 @@ def text_of(pairs: Sequence[Pair], wanted: int) -> str:
             "a chamber in the middle turns by; 10th percentile, median and 90th:"
         ),
         _ends(pairs),
-        "How designs end, in full and reduced:",
-        _statuses(pairs),
-        wrapped(
-            "What the gate makes of them. Gated: cells where they are trusted, else pieces where "
-            "they are, else the full analysis, whose errors count as none and whose seconds are "
-            "those of the study:"
-        ),
-        _gate(pairs),
-        "Why cells alone, and pieces, are not trusted:",
-        _doubts(pairs),
+        *ends,
+        *gate,
         "The ten tips that are farthest off, cells and pieces:",
         _worst([pair for pair in pairs if pair.fidelity == PIECES]),
     ]

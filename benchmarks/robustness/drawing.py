@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import chain
 from typing import Any, Final
 
@@ -11,10 +12,10 @@ import numpy as np
 from pagd.catalogue import NamedDesign
 from pagd.dataset import sample_designs
 from pagd.dataset.category import CATEGORIES
-from pagd.design import Design
+from pagd.design import Design, violations
 from pagd.stages.geometry import rules_of
 
-__all__ = ["THIN_MM", "drawn_designs", "is_thin_walled"]
+__all__ = ["THIN_MM", "drawn_designs", "is_thin_walled", "mixed_designs"]
 
 #: A side wall or a wall between chambers below this, in mm, makes a design thin-walled.
 THIN_MM: Final = 1.5
@@ -43,6 +44,32 @@ def drawn_designs(count: int, seed: int, config: Mapping[str, Any]) -> list[Name
     return [
         NamedDesign(name=f"r{number:04d}", origin="random", design=design)
         for number, design in enumerate(in_turn, start=1)
+    ]
+
+
+def mixed_designs(count: int, seed: int, config: Mapping[str, Any]) -> list[NamedDesign]:
+    """Return valid random mixed rows: twisting designs of which a share of chambers is straight.
+
+    Parameters
+    ----------
+    count
+        How many; fewer designs of an equal seed are the beginning of more.
+    seed, config
+        As of :func:`drawn_designs`. The share α is uniform between those of one slanted chamber
+        and of one straight one.
+    """
+    rules = rules_of(config)
+    random = np.random.default_rng([seed, len(CATEGORIES)])
+    found: list[Design] = []
+    while len(found) < count:
+        (slanted,) = sample_designs(1, "twisting", rules, random).designs
+        share = round(float(random.uniform(1.0, slanted.N - 1.0)) / slanted.N, 4)
+        mixed = replace(slanted, alpha=share)
+        if mixed.mode == "mixed" and not violations(mixed, rules):
+            found.append(mixed)
+    return [
+        NamedDesign(name=f"m{number:04d}", origin="random", design=design)
+        for number, design in enumerate(found, start=1)
     ]
 
 

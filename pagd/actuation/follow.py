@@ -85,8 +85,8 @@ def follow(
     guide
         First guesses, if there are any.
     solver
-        The linear solver, which then keeps its factors; without it, one of that name is made and
-        freed.
+        The linear solver, which then keeps its factors; without it, one as ``actuation`` names it
+        is made, and freed at the end.
     """
     kept, solver = solver, solver or linear_solver(actuation.linear_solver)
     touches = any(isinstance(term, FaceContact | PlaneContact) for term in assembly.terms)

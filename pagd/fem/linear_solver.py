@@ -55,6 +55,7 @@ class LinearSolver(Protocol):
         """Take a pattern: row starts (m + 1,) and sorted columns (z,), the diagonal included.
 
         Of a body whose ends are tied to each other it ``is_ring``: no chain, and no slender body.
+        What is known of the same two arrays already need not be found anew.
         """
         ...
 
@@ -286,7 +287,8 @@ class SuperLUSolver:
             return np.asarray(self._factors.solve(right))
 
     def free(self) -> None:
-        """Nothing is kept between calls."""
+        """Give the memory of the factors back."""
+        self._factors = None
 
 
 _SOLVERS: dict[str, Callable[[], LinearSolver]] = {

@@ -42,6 +42,8 @@ class Blocked:
 def blocked_forces(reduced: ReducedRow, channel: Channel) -> Blocked:
     """The force on the support of the held tip, and how far cells are turned against their shape.
 
+    Factors that the cells have kept are used, and freed.
+
     Raises
     ------
     SingularMatrixError
@@ -52,7 +54,10 @@ def blocked_forces(reduced: ReducedRow, channel: Channel) -> Blocked:
         kind: Answers(cell.model, cell.assembly, cell.solver)
         for kind, cell in reduced.cells.items()
     }
-    known = _compliances(reduced, row, answers)
+    try:
+        known = _compliances(reduced, row, answers)
+    finally:
+        reduced.free()
     forces, turned = np.full((2, len(reduced.pressure_kPa)), np.nan)
     forces[0] = turned[0] = 0.0
     held = _Held(reduced, row, known)
@@ -181,5 +186,6 @@ def _rod(reduced: ReducedRow, row: Row, known: Mapping[bool, Compliance], pressu
     )
     if not kinds[0]:
         return rod
-    half = np.array([design.L / 4, 0.0, -design.t_b])
-    return rod.with_joint_in_front(half, known[True].of_half_a_chamber())
+    # The half that no joint stands for is the one at the clamp, where hardly anything has moved.
+    middle = np.array([design.L / 4, 0.0, -design.t_b])
+    return rod.with_joint_in_front(middle, known[True].of_half_a_chamber())

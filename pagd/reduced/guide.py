@@ -64,7 +64,6 @@ class RowGuide:
         self.reduced: ReducedRow = solve_row(
             design, channel, size, material, paper, actuation, mesh
         )
-        self.reduced.free()
         self._row = self.reduced.row(mesh.points, channel)
         self._wanted = actuation.recorded_kPa()
         self._last = self._usable(stop)

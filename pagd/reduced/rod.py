@@ -74,13 +74,12 @@ class Rod:
         Unknowns are forces at the edge in N, then moments at the joints in N mm; what is lacking
         are heights of the edge in mm, then moments.
         """
-        arrays, joints = self._arrays(), len(self.centres)
-        turned, balance = np.empty((joints, 3)), np.empty((joints, 3))
-        cells, cuts, ends = np.empty((joints, 3, 3)), np.empty((joints, 3)), np.empty((2, 3))
+        carried = self._carried()
+        balance = np.empty((len(self.centres), 3))
 
         def lacking(unknowns: FloatArray) -> FloatArray:
             forces, moments = self._split(unknowns)
-            shape(*arrays, moments, turned, cells, cuts, ends)
+            _, cells, cuts, ends = carried(moments)
             unbalanced(cells, cuts, ends, forces, moments, balance)
             heights = ends[:, 2] - self.height
             if self.is_planar:
@@ -88,6 +87,18 @@ class Rod:
             return np.concatenate([heights, balance.ravel()])
 
         return lacking
+
+    def _carried(self) -> Callable[[FloatArray], tuple[FloatArray, ...]]:
+        """A function of the moments (j, 3): what ``shape`` fills, in arrays used again."""
+        arrays, joints = self._arrays(), len(self.centres)
+        turned, cuts = np.empty((joints, 3)), np.empty((joints, 3))
+        cells, ends = np.empty((joints, 3, 3)), np.empty((2, 3))
+
+        def carried(moments: FloatArray) -> tuple[FloatArray, ...]:
+            shape(*arrays, moments, turned, cells, cuts, ends)
+            return turned, cells, cuts, ends
+
+        return carried
 
     def _arrays(self) -> _Arrays:
         """What of the rod :func:`pagd.reduced.rod_kernels.shape` is given first."""
@@ -125,10 +136,7 @@ class Rod:
 
     def turned_most(self, unknowns: FloatArray) -> float:
         """The largest rotation of a joint by its moment, in radians."""
-        joints = len(self.centres)
-        turned, cuts = np.empty((joints, 3)), np.empty((joints, 3))
-        cells, ends = np.empty((joints, 3, 3)), np.empty((2, 3))
-        shape(*self._arrays(), self.moments(unknowns), turned, cells, cuts, ends)
+        turned, *_ = self._carried()(self.moments(unknowns))
         return float(np.linalg.norm(turned, axis=1).max())
 
     def force(self, unknowns: FloatArray) -> float:

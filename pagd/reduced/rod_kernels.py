@@ -74,9 +74,7 @@ def shape(
     cuts: FloatArray,
     ends: FloatArray,
 ) -> None:
-    """Fill rotation vectors (j, 3) of the joints by their moments, and where the chain is then.
-
-    Rotations (j, 3, 3) of the cells, centres (j, 3) of the cuts and the edge (2, 3).
+    """Fill where the chain is under moments: ``turned``, ``cells``, ``cuts`` and ``ends``.
 
     Parameters
     ----------
@@ -92,6 +90,10 @@ def shape(
         (2, 3) in coordinates of the last cell.
     moments
         (j, 3) at the joints, in coordinates of the cell before.
+    turned
+        (j, 3) rotation vectors of the joints by their moments, filled.
+    cells, cuts, ends
+        Rotations (j, 3, 3) of the cells, centres (j, 3) of the cuts and the edge (2, 3), filled.
     """
     rotation, place = base[:, :3].copy(), base[:, 3].copy()
     further, joint = np.empty((3, 3)), np.empty((3, 3))

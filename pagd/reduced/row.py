@@ -2,8 +2,9 @@
 
 The cell of chamber k is the one before it carried on by a screw motion. Without pieces of their
 own at its ends a row begins where its first chamber does: all in front of it is clamped, or so
-stiff that it counts as clamped, and of a straight chamber a share as well; behind the last chamber
-it is rigid, and so is the wedge where slanted chambers give way to straight ones.
+stiff that it counts as clamped. A straight first chamber turns by a share of what a cell does,
+since its wall at the clamp does not bulge. Behind the last chamber the row is rigid, and so is the
+wedge where slanted chambers give way to straight ones.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ class SolvedCell:
 
     mesh: as its row has it, of the whole width where the row is. model: what was solved, a half
     for straight cells. result: of one cell. path: the shapes on ``mesh``. states: (p,) recorded.
-    assembly, solver: of the model, the latter with what it knows of it until it is freed.
+    assembly, solver: of the model; the latter has its last factors, where they are kept.
     """
 
     mesh: CellMesh
@@ -152,10 +152,10 @@ def solve_row(
     paper: Sheet,
     actuation: Actuation | None = None,
     mesh: Mesh | None = None,
+    *,
+    keeps_factors: bool = False,
 ) -> ReducedRow:
     """Solve the cells of a design, and the pieces between them if the mesh of its row is given.
-
-    The cells keep their factors, to be freed by :meth:`ReducedRow.free`.
 
     Parameters
     ----------
@@ -172,6 +172,9 @@ def solve_row(
     mesh
         The row in blocks of that size (of the half, if it is straight), for pieces of their own
         at its ends and where its chambers change.
+    keeps_factors
+        Whether the cells keep their factors, for :func:`pagd.reduced.blocked.blocked_forces`; they
+        are then to be freed by :meth:`ReducedRow.free`.
 
     Raises
     ------
@@ -179,18 +182,23 @@ def solve_row(
         Where the settings cannot be used.
     """
     wanted = actuation or Actuation()
-    kinds = sorted({bool(skew) for skew in design.chamber_skews()})
-    cells = {
-        kind: _solved_cell(
-            design, channel, size, material, paper, wanted, kind, half=_is_half(kind, mesh)
-        )
-        for kind in kinds
-    }
-    pressures, status, reason = _reached(cells)
-    pieces: list[SolvedPiece] = []
-    if mesh is not None:
-        pieces = _solved_pieces(design, mesh, size, cells, pressures, material, paper, wanted)
-        pressures, status, reason = _shortened(pieces, pressures, status, reason)
+    cells: dict[bool, SolvedCell] = {}
+    try:
+        for kind in sorted({bool(skew) for skew in design.chamber_skews()}):
+            cells[kind] = _solved_cell(
+                design, channel, size, material, paper, wanted, kind, half=_is_half(kind, mesh)
+            )
+            if not keeps_factors:
+                cells[kind].solver.free()
+        pressures, status, reason = _reached(cells)
+        pieces: list[SolvedPiece] = []
+        if mesh is not None:
+            pieces = _solved_pieces(design, mesh, size, cells, pressures, material, paper, wanted)
+            pressures, status, reason = _shortened(pieces, pressures, status, reason)
+    except BaseException:
+        for cell in cells.values():
+            cell.solver.free()
+        raise
     return ReducedRow(design, pressures, cells, pieces, status, reason)
 
 

@@ -17,7 +17,7 @@ STAGE_VERSIONS = {
     "mesh": 3,
     "solve": 11,
     "metrics": 5,
-    "screening": 4,
+    "screening": 5,
     "fronts": 2,
     "figures": 3,
     "generative_figures": 4,

@@ -133,6 +133,7 @@ def _analysed(
         materials.paper,
         actuation,
         mesh if pieces else None,
+        keeps_factors=True,
     )
     try:
         moved = _moved(reduced, mesh, rules.channel)

@@ -101,6 +101,38 @@ def test_new_pattern(solver: LinearSolver) -> None:
         np.testing.assert_allclose(solver.solve(values, right), exact, rtol=1e-7, atol=1e-9)
 
 
+def test_what_is_known_of_a_pattern_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pypardiso", reason="MKL exists for x86-64 only")
+    solver, matrix = PardisoSolver(), saddle_point()
+    upper = csr_array(triu(matrix, format="csr"))
+    upper.sort_indices()
+    pattern = upper.indptr.astype(np.int32), upper.indices.astype(np.int32)
+    right = np.ones(matrix.shape[0])
+    analyses: list[int] = []
+    phase = PardisoSolver._phase
+
+    def counted(self: PardisoSolver, number: int, *more: FloatArray) -> FloatArray:
+        analyses.extend([1] * (number == PardisoSolver._ANALYSE))
+        return phase(self, number, *more)
+
+    monkeypatch.setattr(PardisoSolver, "_phase", counted)
+    for (starts, columns), is_ring, wanted in (
+        (pattern, False, 1),
+        (pattern, False, 1),
+        (pattern, True, 2),
+        ((pattern[0].copy(), pattern[1]), True, 3),
+    ):
+        solver.analyse(starts, columns, is_ring=is_ring)
+        found = solver.solve(upper.data, right)
+        np.testing.assert_allclose(matrix @ found, right, atol=1e-8)
+        assert len(analyses) == wanted
+    solver.free()
+    solver.analyse(*pattern, is_ring=True)
+    solver.solve(upper.data, right)
+    assert len(analyses) == 4
+    solver.free()
+
+
 def test_inputs_are_left_alone(solver: LinearSolver) -> None:
     matrix = saddle_point()
     values, right = analyse(solver, matrix), np.ones(matrix.shape[0])

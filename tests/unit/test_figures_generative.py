@@ -568,6 +568,22 @@ def test_screened_designs_are_shown_with_both_fronts():
     assert legend_of(figure)[:2] == ["bending (1)", "mixed (1)"]
 
 
+def test_doubted_forces_are_not_shown_but_beside_full_analyses():
+    cells = performance(screened("g", ["bending"] * 3, novelty=1.0, blocked_force_N=2.0))
+    cells["doubt"], cells["fidelity"] = [None, "Far.", None], "cells"
+    old = performance(screened("d", ["bending"]))
+    twist, force, _ = screened_figure(cells, old).axes
+    assert (points_in(twist), points_in(force)) == (4, 3)
+    held = {"blocked_force_N": 1.0, "blocked_force_pressure_kPa": 50.0}
+    full = performance([simulated("g0002", "generated", "bending", bending=12.0, **held)])
+    cells["blocked_force_pressure_kPa"] = 50.0
+    novelty = screened_novelty_figure(cells, full).axes[2]
+    # Two that are trusted, the full analysis, and the line to the doubted one.
+    assert points_in(novelty) == 2 + 1 + 1
+    line = next(c for c in novelty.collections if hasattr(c, "get_segments"))
+    assert sorted(line.get_segments()[0][:, 1]) == [1.0, 2.0]
+
+
 def test_full_analyses_are_set_beside_cells_at_the_same_pressure():
     cells = performance(screened("g", ["bending"] * 3, novelty=1.0))
     full = performance(

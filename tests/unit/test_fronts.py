@@ -62,6 +62,7 @@ def test_designs_that_are_all_alike_have_the_ratio_of_their_boxes() -> None:
     assert whole["front"]["training"] == {}
     assert set(whole["front"]["generated"]) == {"mixed"}
     assert (len(by), found["drawn"]) == (4, 2)
+    assert found["known"]["blocked_force_N"] == {"training": 9, "generated": 6}
 
 
 @pytest.mark.parametrize("sizes", [(500, 1000), (1500, 150)])

@@ -314,6 +314,7 @@ SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
 FRONTS = {
     "training": 480,
     "generated": 1000,
+    "known": {"blocked_force_N": {"training": 130, "generated": 1210}},
     "drawn": 160,
     "comparisons": [
         {
@@ -370,7 +371,7 @@ def study(tmp_path_factory):
 @pytest.mark.parametrize(
     ("ratio", "p", "words"),
     [
-        (1.2, 0.01, "generated designs do more: 20 % more in volume"),
+        (1.2, 0.01, "force at once, generated designs do more: 20 % more in volume"),
         (0.8, 0.01, "generated designs do less: 20 % less in volume"),
         (0.8, 0.2, "no difference is certain: 20 % less in volume"),
     ],
@@ -379,6 +380,16 @@ def test_the_answer_is_as_sure_as_the_test(ratio, p, words):
     whole = FRONTS["comparisons"][0] | {"ratio": ratio, "p": p}
     assert words in answer_of(FRONTS | {"comparisons": [whole]})
     assert "Too few" in answer_of(FRONTS | {"comparisons": []})
+    assert "is trusted of 1,210 generated and 130 training" in answer_of(FRONTS)
+
+
+def test_the_answer_begins_with_what_cells_are_sure_of():
+    whole = FRONTS["comparisons"][0]
+    free = whole | {"objectives": ["bending_deg", "twist_deg"], "ratio": 0.5, "p": 0.01}
+    told = answer_of(FRONTS | {"comparisons": [whole, free]})
+    assert told.startswith("By bending, twist at once, generated designs do less: 50 % less")
+    assert told.count("at once") == 2
+    assert answer_of(FRONTS | {"comparisons": [free]}).count("at once") == 1
 
 
 PICTURES_TOGETHER = ("gallery", "trajectories", "angles", "forces")
@@ -418,7 +429,8 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "<dd>2 invalid, 1 copy of a training design, 3 duplicates</dd>",
         "<dd>990 ok, 10 bending limit</dd>",
         "By bending, twist, blocked force at once, generated designs do more: 23 % more in volume,"
-        " 160 designs of either kind, p = 0.013. Of their common front 68 % are generated.",
+        " 160 designs of either kind, p = 0.013; the force is trusted of 1,210 generated and 130"
+        " training designs. Of their common front 68 % are generated.",
     ):
         assert fact in text
     assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"

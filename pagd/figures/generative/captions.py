@@ -95,17 +95,19 @@ CAPTIONS: Final[Mapping[str, tuple[str, ...]]] = {
         " free tip, to either side, and blocked force, at the last pressure reached.",
         "Stairs are Pareto fronts: no design of a kind is beyond its own.",
         "Shown are designs that came to an equilibrium at the last pressure, or to the limit of"
-        " bending: {screened} generated and {screened_training} training designs.",
+        " bending: {screened} generated and {screened_training} training designs; with the blocked"
+        " force only those whose force the gate trusts.",
     ),
     "screened_novelty": (
-        "Every screened generated design by its novelty, the distance to the nearest training"
-        " design in the standardised 16 parameters, and by what a chamber tells that it does.",
-        "Open circles: full analyses, joined to the same designs by a chamber.",
+        "The screened generated designs by their novelty, the distance to the nearest training"
+        " design in the standardised 16 parameters, and by what a chamber tells that they do;"
+        " blocked forces are those that the gate trusts.",
+        "Open circles: full analyses, joined to the same designs by a chamber, trusted or not.",
         "The rank correlation (Spearman) is over all shown.",
     ),
     "screened_beside_full": (
         "Bending, twist and blocked force by a chamber against those of the full analysis, of"
-        " designs that have both and came to the same pressure.",
+        " designs that have both and came to the same pressure, trusted or not.",
         "The median error is over designs with more than 5 % of the largest value.",
     ),
     "distributions": (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from pagd.figures.page.generative import counted
@@ -17,13 +17,15 @@ __all__ = ["answer_of", "screening"]
 _NOTE: Final = """<p class="note">Every design is one chamber of an endless row, which costs
 seconds, not a minute; how far that is from the full analysis tells docs/reduced-order.md. Mixed
 designs, all of them generated, have errors of their own, where chambers change. A gate tells
-whose blocked force is doubtful: far from their free shape, as those that curl most are. Such
-forces count as none, and are not drawn. The volume is that of all combinations of the objectives
-that a design of a draw reaches or exceeds; in brackets the middle 95 % of the draws. p is how
-often labels given at random make as much of a difference. Designs that fail count as designs that
-do nothing.</p>"""
+whose blocked force is doubtful: of rows held far from their free shape, which those that curl
+most are. In volumes and fronts such a force counts as none, so that a comparison with forces is
+one of designs that curl moderately as well. The volume is that of all combinations of the
+objectives that a design of a draw reaches or exceeds; in brackets the middle 95 % of the draws. p
+is how often labels given at random make as much of a difference. Designs that fail count as
+designs that do nothing.</p>"""
 # Differences that labels given at random make more rarely are called certain.
 _CERTAIN: Final = 0.05
+_FORCE: Final = "blocked_force_N"
 
 
 def screening(study: Study) -> str:
@@ -53,7 +55,9 @@ def screening(study: Study) -> str:
 
 
 def answer_of(fronts: Mapping[str, Any]) -> str:
-    """Whether generated designs are better than training designs, in a sentence or two.
+    """Whether generated designs are better than training designs, in a few sentences.
+
+    First by what cells are sure of, bending and twist, then with the blocked force.
 
     Parameters
     ----------
@@ -62,16 +66,32 @@ def answer_of(fronts: Mapping[str, Any]) -> str:
     """
     if not fronts["comparisons"]:
         return "Too few designs came to their end to compare generated and training designs."
+    told = [_sentence(fronts, each) for each in _of_answer(fronts["comparisons"])]
     whole = fronts["comparisons"][0]
-    objectives = ", ".join(OBJECTIVES[name] for name in whole["objectives"])
-    better = "more" if whole["ratio"] > 1.0 else "less"
-    told = f"{number(100.0 * abs(whole['ratio'] - 1.0), 0)} % {better} in volume"
-    how = f"{told}, {fronts['drawn']:,} designs of either kind, p = {number(whole['p'], 3)}"
-    if whole["p"] > _CERTAIN:
-        answer = f"By {objectives} at once no difference is certain: {how}."
-    else:
-        answer = f"By {objectives} at once, generated designs do {better}: {how}."
-    return f"{answer} Of their common front {number(100.0 * whole['share'], 0)} % are generated."
+    share = number(100.0 * whole["share"], 0)
+    return f"{' '.join(told)} Of their common front {share} % are generated."
+
+
+def _of_answer(comparisons: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The comparison of what cells are sure of, and that of everything."""
+    free = [each for each in comparisons if _FORCE not in each["objectives"]]
+    return [*free[:1], *([comparisons[0]] if comparisons[0] not in free[:1] else [])]
+
+
+def _sentence(fronts: Mapping[str, Any], comparison: Mapping[str, Any]) -> str:
+    objectives = ", ".join(OBJECTIVES[name] for name in comparison["objectives"])
+    better = "more" if comparison["ratio"] > 1.0 else "less"
+    told = f"{number(100.0 * abs(comparison['ratio'] - 1.0), 0)} % {better} in volume"
+    how = f"{told}, {fronts['drawn']:,} designs of either kind, p = {number(comparison['p'], 3)}"
+    known = fronts.get("known", {}).get(_FORCE)
+    if known and _FORCE in comparison["objectives"]:
+        how += (
+            f"; the force is trusted of {known['generated']:,} generated and {known['training']:,} "
+            "training designs"
+        )
+    if comparison["p"] > _CERTAIN:
+        return f"By {objectives} at once no difference is certain: {how}."
+    return f"By {objectives} at once, generated designs do {better}: {how}."
 
 
 def _table(fronts: Mapping[str, Any]) -> str:
