@@ -14,7 +14,7 @@ from pagd.fem.assembly import State
 from pagd.reduced.compliance import Answers, Compliance, Loaded
 from pagd.reduced.rod import Rod, held_force
 from pagd.reduced.row import Row
-from pagd.reduced.solve import ReducedRow
+from pagd.reduced.solve import ReducedRow, SolvedCell
 
 FloatArray = NDArray[np.float64]
 
@@ -46,14 +46,13 @@ def blocked_forces(reduced: ReducedRow, channel: Channel) -> Blocked:
 
     Raises
     ------
+    ValueError
+        Where the row was solved without keeping them.
     SingularMatrixError
         Where the tangent of a cell is singular.
     """
     row = reduced.row(_edge(reduced), channel)
-    answers = {
-        kind: Answers(cell.model, cell.assembly, cell.solver)
-        for kind, cell in reduced.cells.items()
-    }
+    answers = {kind: _answers(cell) for kind, cell in reduced.cells.items()}
     try:
         known = _compliances(reduced, row, answers)
     finally:
@@ -66,6 +65,12 @@ def blocked_forces(reduced: ReducedRow, channel: Channel) -> Blocked:
             break
         forces[number], turned[number] = held.force, np.degrees(held.turned)
     return Blocked(forces, turned)
+
+
+def _answers(cell: SolvedCell) -> Answers:
+    if cell.kept is None:
+        raise ValueError("to hold the tip of a row its cells have to keep their factors")
+    return Answers(cell.model, cell.kept.assembly, cell.kept.solver)
 
 
 class _Held:

@@ -53,12 +53,20 @@ class _Keeping(Recorder):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Kept:
+    """The terms of a cell and the linear solver with its last factors, until that is freed."""
+
+    assembly: Assembly
+    solver: LinearSolver
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class SolvedCell:
     """A cell and its path.
 
     mesh: as its row has it, of the whole width where the row is. model: what was solved, a half
     for straight cells. result: of one cell. path: the shapes on ``mesh``. states: (p,) recorded.
-    assembly, solver: of the model; the latter has its last factors, where they are kept.
+    kept: what it was solved with, if that was wanted.
     """
 
     mesh: CellMesh
@@ -66,8 +74,7 @@ class SolvedCell:
     result: ActuationResult
     path: CellPath
     states: list[State]
-    assembly: Assembly
-    solver: LinearSolver
+    kept: Kept | None
 
     @property
     def factorisations(self) -> int:
@@ -140,8 +147,13 @@ class ReducedRow:
 
     def free(self) -> None:
         """Give the memory of the factors back; what asks for them computes them anew."""
-        for cell in self.cells.values():
-            cell.solver.free()
+        _free(self.cells)
+
+
+def _free(cells: Mapping[bool, SolvedCell]) -> None:
+    for cell in cells.values():
+        if cell.kept is not None:
+            cell.kept.solver.free()
 
 
 def solve_row(
@@ -186,18 +198,17 @@ def solve_row(
     try:
         for kind in sorted({bool(skew) for skew in design.chamber_skews()}):
             cells[kind] = _solved_cell(
-                design, channel, size, material, paper, wanted, kind, half=_is_half(kind, mesh)
+                *(design, channel, size, material, paper, wanted, kind),
+                half=_is_half(kind, mesh),
+                keeps=keeps_factors,
             )
-            if not keeps_factors:
-                cells[kind].solver.free()
         pressures, status, reason = _reached(cells)
         pieces: list[SolvedPiece] = []
         if mesh is not None:
             pieces = _solved_pieces(design, mesh, size, cells, pressures, material, paper, wanted)
             pressures, status, reason = _shortened(pieces, pressures, status, reason)
     except BaseException:
-        for cell in cells.values():
-            cell.solver.free()
+        _free(cells)
         raise
     return ReducedRow(design, pressures, cells, pieces, status, reason)
 
@@ -217,27 +228,34 @@ def _solved_cell(
     helical: bool,
     *,
     half: bool,
+    keeps: bool,
 ) -> SolvedCell:
     """Solve a cell or its half, which is unfolded where its row is mixed."""
     mesh = cell_mesh(design, channel, size, helical=helical, half=half)
     finer = replace(actuation, tolerance_mm=_TOLERANCE_SHARE * actuation.tolerance_mm)
     model = Cell(mesh, material, paper, finer)
     recorder, assembly = _Keeping(model), model.assembly()
-    solver = linear_solver(actuation.linear_solver)
-    result = follow(model, assembly, finer, recorder, _WANTED_CORRECTION, solver=solver)
+    solver = linear_solver(actuation.linear_solver) if keeps else None
+    try:
+        result = follow(model, assembly, finer, recorder, _WANTED_CORRECTION, solver=solver)
+    except BaseException:
+        if solver is not None:
+            solver.free()
+        raise
+    kept = None if solver is None else Kept(assembly, solver)
     assert model.tie is not None
     # Behind a limit point the pressure falls: a row of cells is followed up to there.
     pressures = np.array([state.pressure_kPa for state in result.states])
     falls = np.flatnonzero(np.diff(pressures) <= 0)
     rising = slice(0, int(falls[0]) + 1 if len(falls) else len(pressures))
     rows, pressures = np.stack([s.displacement for s in result.states[rising]]), pressures[rising]
-    kept = recorder.kept[rising]
+    states = recorder.kept[rising]
     path = CellPath(pressures, rows[:, : len(mesh.mesh.points)], rows[:, -2:], model.tie)
     if design.is_straight or not half:
-        return SolvedCell(mesh, model, result, path, kept, assembly, solver)
+        return SolvedCell(mesh, model, result, path, states, kept)
     whole = cell_mesh(design, channel, size, helical=False)
     unfolded = path.unfolded(mesh, whole)
-    return SolvedCell(whole, model, result, unfolded, kept, assembly, solver)
+    return SolvedCell(whole, model, result, unfolded, states, kept)
 
 
 def _reached(cells: Mapping[bool, SolvedCell]) -> tuple[FloatArray, Status, str | None]:

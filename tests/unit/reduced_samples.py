@@ -36,4 +36,4 @@ def solved(design: Design, *, pieces: bool) -> ReducedRow:
     from pagd.mesh.chamber_row import chamber_row
 
     mesh = chamber_row(design, CHANNEL, SIZE, half=design.is_straight) if pieces else None
-    return solve_row(design, CHANNEL, SIZE, ELASTOMER, PAPER, ACTUATION, mesh)
+    return solve_row(design, CHANNEL, SIZE, ELASTOMER, PAPER, ACTUATION, mesh, keeps_factors=True)

@@ -180,6 +180,14 @@ def test_blocked_force_is_near_that_of_the_whole(design: Design) -> None:
         np.testing.assert_allclose(found[1:], wanted[1:], rtol=0.1)
 
 
+def test_a_row_that_kept_nothing_cannot_be_held() -> None:
+    short = Actuation(maximum_pressure_kPa=1.0, recorded_step_kPa=1.0)
+    reduced = solve_row(STRAIGHT, CHANNEL, SIZE, ELASTOMER, PAPER, short)
+    assert reduced.cells[False].kept is None
+    with pytest.raises(ValueError, match="keep their factors"):
+        blocked_forces(reduced, CHANNEL)
+
+
 def test_two_chambers_have_a_joint() -> None:
     found = blocked_forces(solved(replace(SLANTED, N=2), pieces=False), CHANNEL)
     assert (found.force_N[1:] > 0).all()
@@ -190,17 +198,17 @@ def test_two_chambers_have_a_joint() -> None:
 def test_compliances_are_what_small_moments_do(design: Design) -> None:
     """Rotation of the motion and of the chamber's base, against states solved for."""
     known = solved(design, pieces=False).cells[bool(design.chamber_skews()[0])]
-    model, state = known.model, known.states[-1]
-    answers = Answers(model, known.assembly, known.solver)
-    found = answers.at(state)
+    model, state, kept = known.model, known.states[-1], known.kept
+    assert kept is not None
+    found = Answers(model, kept.assembly, kept.solver).at(state)
     # About the width, the axis that a half model has too; half of it bears half.
     moment = np.array([0.0, 0.02, 0.0])
-    known.assembly.moment = moment / model.copies
+    kept.assembly.moment = moment / model.copies
     settings = NewtonSettings(tolerance=1e-7, iterations=20)
-    newton = Newton(known.assembly, known.solver, 3 * model.nodes, settings)
+    newton = Newton(kept.assembly, kept.solver, 3 * model.nodes, settings)
     loaded = newton.solve(state).state
-    known.assembly.moment = np.zeros(3)
-    known.solver.free()
+    kept.assembly.moment = np.zeros(3)
+    kept.solver.free()
     assert loaded is not None
     turned = []
     for each in (state, loaded):
