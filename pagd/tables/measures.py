@@ -86,12 +86,7 @@ PERFORMANCE = (
     Column("blocked_force_pressure_kPa", "double", "kPa", "pressure of that force, its last one"),
     Column("blocked_force_variant", "string", "", "edge: the tip is held; plate: it meets a plate"),
     Column("blocked_force_status", "string", "", "how the analysis of the blocked force ended"),
-    Column(
-        "held_turn_deg",
-        "double",
-        "deg",
-        "largest turn of a chamber by the held tip, at any pressure; of cells and pieces",
-    ),
+    Column("held_turn_deg", "double", "deg", "most that a held tip turns a chamber; not in full"),
     Column(
         "first_contact_pressure_kPa",
         "double",
