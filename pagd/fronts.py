@@ -53,8 +53,9 @@ def compare(
 ) -> dict[str, Any]:
     """Compare what training and generated designs can do, by all objectives and by each two.
 
-    A design that does not come to its end counts as one that does nothing, and so does a blocked
-    force that the gate doubts. An objective that no design of a kind has is left out.
+    A design that does not come to its end counts as one that does nothing. One whose blocked force
+    is not known, or doubted by the gate, is left out where forces are compared: doubts are not as
+    frequent in both kinds. An objective that no design of a kind has is left out.
 
     Parameters
     ----------
@@ -68,31 +69,24 @@ def compare(
     Returns
     -------
     dict
-        ``training`` and ``generated``, how many there are; ``known``, by objective and kind of how
-        many it is known and not doubted; ``drawn``, how many of either a draw has; ``comparisons``,
-        each with ``objectives``, ``ratio`` (the volume of the generated designs by that of the
-        training designs, median of the draws), ``low`` and ``high`` (the middle 95 % of the draws),
-        ``p`` (of the permutation test, two-sided), ``share`` (mean share of generated designs in
-        the front of a draw), ``front`` (all designs that none of all dominates, by kind and mode)
-        and ``front_designs``. None are left where there are fewer than two objectives, or a volume
-        of nothing.
+        ``training`` and ``generated``, how many there are; ``comparisons``, each with
+        ``objectives``, ``compared`` (how many of either kind), ``drawn`` (how many of either a draw
+        has), ``ratio`` (the volume of the generated designs by that of the training designs, median
+        of the draws), ``low`` and ``high`` (the middle 95 % of the draws), ``p`` (of the
+        permutation test, two-sided), ``share`` (mean share of generated designs in the front of a
+        draw), ``front`` (all designs that none of all dominates, by kind and mode) and
+        ``front_designs``. None are left where there are fewer than two objectives, too few designs,
+        or a volume of nothing.
     """
     sets = {"training": training, "generated": generated}
     some = [name for name in OBJECTIVES if all(_has(frame, name) for frame in sets.values())]
     several = [names for size in range(len(some), 1, -1) for names in combinations(some, size)]
-    drawn = int(min(map(len, sets.values())) * _SHARE)
     found = [
-        _comparison(sets, names, np.random.default_rng([seed, number]), drawn, repeats)
+        _comparison(sets, names, np.random.default_rng([seed, number]), repeats)
         for number, names in enumerate(several)
-        if drawn
     ]
     return {
         **{kind: len(frame) for kind, frame in sets.items()},
-        "known": {
-            name: {kind: int(known(reached(frame), [name]).sum()) for kind, frame in sets.items()}
-            for name in some
-        },
-        "drawn": drawn,
         "comparisons": [each for each in found if each],
     }
 
@@ -148,9 +142,12 @@ def _comparison(
     sets: Mapping[str, pd.DataFrame],
     names: Sequence[str],
     random: np.random.Generator,
-    drawn: int,
     repeats: int,
 ) -> dict[str, Any] | None:
+    sets = {kind: frame[_is_compared(frame, names)] for kind, frame in sets.items()}
+    drawn = int(min(map(len, sets.values())) * _SHARE)
+    if not drawn:
+        return None
     old, new = (values_of(sets[kind], names) for kind in ("training", "generated"))
     logs = np.array([_log_ratio(*_draw(old, new, drawn, random)) for _ in range(repeats)])
     if not np.isfinite(logs).all():
@@ -160,6 +157,8 @@ def _comparison(
     front = both[not_dominated(np.vstack([old, new]))]
     return {
         "objectives": list(names),
+        "compared": {kind: len(frame) for kind, frame in sets.items()},
+        "drawn": drawn,
         "ratio": float(ratio),
         "low": float(low),
         "high": float(high),
@@ -171,6 +170,11 @@ def _comparison(
         },
         "front_designs": front["design_id"].astype(str).tolist(),
     }
+
+
+def _is_compared(frame: pd.DataFrame, names: Sequence[str]) -> BoolArray:
+    """Which rows (n,) have all objectives, or none since they did not come to their end."""
+    return known(frame, names) | ~frame["status"].isin(_REACHED).to_numpy()
 
 
 def _draw(

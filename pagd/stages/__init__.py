@@ -18,7 +18,7 @@ STAGE_VERSIONS = {
     "solve": 11,
     "metrics": 5,
     "screening": 5,
-    "fronts": 2,
+    "fronts": 3,
     "figures": 3,
     "generative_figures": 4,
     "summary": 5,

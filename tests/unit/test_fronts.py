@@ -61,8 +61,20 @@ def test_designs_that_are_all_alike_have_the_ratio_of_their_boxes() -> None:
     assert whole["share"] == 1.0
     assert whole["front"]["training"] == {}
     assert set(whole["front"]["generated"]) == {"mixed"}
-    assert (len(by), found["drawn"]) == (4, 2)
-    assert found["known"]["blocked_force_N"] == {"training": 9, "generated": 6}
+    assert (len(by), whole["drawn"]) == (4, 2)
+    assert whole["compared"] == {"training": 9, "generated": 6}
+
+
+def test_doubts_of_one_kind_alone_make_no_difference() -> None:
+    """Those whose force is doubted are left out of both kinds; those that fail are not."""
+    old, new = table([(10, 10, 1)] * 60), table([(10, 10, 1)] * 60)
+    new["doubt"], new["fidelity"] = [None] * 20 + ["Far."] * 40, "cells"
+    new.loc[59, "status"] = "buckled"
+    by = {tuple(c["objectives"]): c for c in compare(old, new, seed=1, repeats=19)["comparisons"]}
+    whole = by[tuple(ALL)]
+    assert whole["compared"] == {"training": 60, "generated": 21}
+    assert (whole["drawn"], whole["ratio"]) == (7, 1.0)
+    assert by["bending_deg", "twist_deg"]["compared"] == {"training": 60, "generated": 60}
 
 
 @pytest.mark.parametrize("sizes", [(500, 1000), (1500, 150)])

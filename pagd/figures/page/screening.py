@@ -15,14 +15,14 @@ from pagd.fronts import OBJECTIVES
 __all__ = ["answer_of", "screening"]
 
 _NOTE: Final = """<p class="note">Every design is one chamber of an endless row, which costs
-seconds, not a minute; how far that is from the full analysis tells docs/reduced-order.md. Mixed
-designs, all of them generated, have errors of their own, where chambers change. A gate tells
-whose blocked force is doubtful: of rows held far from their free shape, which those that curl
-most are. In volumes and fronts such a force counts as none, so that a comparison with forces is
-one of designs that curl moderately as well. The volume is that of all combinations of the
-objectives that a design of a draw reaches or exceeds; in brackets the middle 95 % of the draws. p
-is how often labels given at random make as much of a difference. Designs that fail count as
-designs that do nothing.</p>"""
+seconds, not a minute; how far that is from the full analysis tells docs/reduced-order.md.
+Mixed designs, all of them generated, have errors of their own, where chambers change. A
+gate tells whose blocked force is doubtful: of rows held far from their free shape, which
+those that curl most are. Where forces are compared such designs are left out of both kinds,
+so that it is of those that curl moderately. The volume is that of all combinations of the
+objectives that a design of a draw reaches or exceeds; in brackets the middle 95 % of the
+draws. p is how often labels given at random make as much of a difference. Designs that fail
+count as designs that do nothing.</p>"""
 # Differences that labels given at random make more rarely are called certain.
 _CERTAIN: Final = 0.05
 _FORCE: Final = "blocked_force_N"
@@ -66,7 +66,7 @@ def answer_of(fronts: Mapping[str, Any]) -> str:
     """
     if not fronts["comparisons"]:
         return "Too few designs came to their end to compare generated and training designs."
-    told = [_sentence(fronts, each) for each in _of_answer(fronts["comparisons"])]
+    told = [_sentence(each) for each in _of_answer(fronts["comparisons"])]
     whole = fronts["comparisons"][0]
     share = number(100.0 * whole["share"], 0)
     return f"{' '.join(told)} Of their common front {share} % are generated."
@@ -78,17 +78,15 @@ def _of_answer(comparisons: Sequence[Mapping[str, Any]]) -> list[Mapping[str, An
     return [*free[:1], *([comparisons[0]] if comparisons[0] not in free[:1] else [])]
 
 
-def _sentence(fronts: Mapping[str, Any], comparison: Mapping[str, Any]) -> str:
+def _sentence(comparison: Mapping[str, Any]) -> str:
     objectives = ", ".join(OBJECTIVES[name] for name in comparison["objectives"])
     better = "more" if comparison["ratio"] > 1.0 else "less"
-    told = f"{number(100.0 * abs(comparison['ratio'] - 1.0), 0)} % {better} in volume"
-    how = f"{told}, {fronts['drawn']:,} designs of either kind, p = {number(comparison['p'], 3)}"
-    known = fronts.get("known", {}).get(_FORCE)
-    if known and _FORCE in comparison["objectives"]:
-        how += (
-            f"; the force is trusted of {known['generated']:,} generated and {known['training']:,} "
-            "training designs"
-        )
+    of = comparison["compared"]
+    how = (
+        f"{number(100.0 * abs(comparison['ratio'] - 1.0), 0)} % {better} in volume, "
+        f"{comparison['drawn']:,} designs of either kind, drawn from {of['generated']:,} generated "
+        f"and {of['training']:,} training designs, p = {number(comparison['p'], 3)}"
+    )
     if comparison["p"] > _CERTAIN:
         return f"By {objectives} at once no difference is certain: {how}."
     return f"By {objectives} at once, generated designs do {better}: {how}."
