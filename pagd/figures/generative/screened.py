@@ -89,8 +89,8 @@ def screened_figure(generated: pd.DataFrame, training: pd.DataFrame) -> Figure:
         axes.scatter(shown[:, 0], shown[:, 1], s=5, c=_GREY, marker="o", linewidths=0, zorder=1)
         some = known(generated, pair)
         _draw_modes(axes, generated[some], new[some])
-        _draw_front(axes, old, FAINT)
-        _draw_front(axes, new, INK)
+        _draw_front(axes, shown, FAINT)
+        _draw_front(axes, new[some], INK)
         axes.set(xlabel=_label(pair[0]), ylabel=_label(pair[1]), xlim=(0, None), ylim=(0, None))
         axes.set_title(f"{OBJECTIVES[pair[1]]} and {OBJECTIVES[pair[0]]}")
     handles = [
@@ -222,6 +222,8 @@ def _draw_modes(axes: Axes, frame: pd.DataFrame, values: np.ndarray, size: float
 
 def _draw_front(axes: Axes, values: np.ndarray, colour: str) -> None:
     """A staircase: whatever is below it is not better than a design that is on it."""
+    if not len(values):
+        return
     front = values[not_dominated(values)]
     front = front[np.argsort(front[:, 0])]
     xs = np.concatenate([[0.0], front[:, 0], front[-1:, 0]])
