@@ -53,9 +53,10 @@ def compare(
 ) -> dict[str, Any]:
     """Compare what training and generated designs can do, by all objectives and by each two.
 
-    A design that does not come to its end counts as one that does nothing. One whose blocked force
-    is not known, or doubted by the gate, is left out where forces are compared: doubts are not as
-    frequent in both kinds. An objective that no design of a kind has is left out.
+    A design that does not come to its end counts as one that does nothing, unless that is doubted
+    (:mod:`pagd.stages.gate`): then it is left out. So is one whose blocked force is not known, or
+    doubted, where forces are compared: doubts are not as frequent in both kinds. An objective that
+    no design of a kind has is left out.
 
     Parameters
     ----------
@@ -173,8 +174,12 @@ def _comparison(
 
 
 def _is_compared(frame: pd.DataFrame, names: Sequence[str]) -> BoolArray:
-    """Which rows (n,) have all objectives, or none since they did not come to their end."""
-    return known(frame, names) | ~frame["status"].isin(_REACHED).to_numpy()
+    """Which rows (n,) have all objectives, or do nothing since they fail, and no doubt of that."""
+    ended = frame["status"].isin(_REACHED).to_numpy()
+    sure = np.ones(len(frame), dtype=np.bool_)
+    if "doubt" in frame:
+        sure = ~(frame["doubt"].notna() & (frame["fidelity"] == "cells")).to_numpy()
+    return np.asarray(np.where(ended, known(frame, names), sure), dtype=np.bool_)
 
 
 def _draw(

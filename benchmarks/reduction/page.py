@@ -29,7 +29,7 @@ def text_of(pairs: Sequence[Pair], wanted: int, *, brief: bool = False) -> str:
         f"{len({pair.name for pair in pairs})} of {wanted} random designs that were solved in "
         "full; errors are those of the last recorded pressure that both reached, unless it is "
         "told. The error of a tip is its distance from that of the full model by the latter's "
-        "displacement."
+        "displacement; those of forces are of so many designs as have one in both."
     )
     ends = ["How designs end, in full and reduced:", _statuses(pairs)]
     gate = [
@@ -81,7 +81,7 @@ def _all(pairs: Sequence[Pair]) -> str:
                 _both(_off(last, "twist_deg"), percent=False),
                 _rank(last, "bending_deg"),
                 _rank(last[last["mode"] != "bending"], "twist_deg"),
-                _both(_force_errors(last), percent=True),
+                _forces(last),
                 f"{np.median(seconds):.2f} / {np.percentile(seconds, 90):.2f}",
             ]
         )
@@ -127,6 +127,12 @@ def _both(values: pd.Series, *, percent: bool) -> str:
     return " / ".join(f"{100 * v:.2f} %" if percent else f"{v:.2f}" for v in pair)
 
 
+def _forces(rows: pd.DataFrame) -> str:
+    """Errors of the force, and of how many designs: those that have one in both analyses."""
+    errors = _force_errors(rows)
+    return f"{_both(errors, percent=True)} ({len(errors)})"
+
+
 def _rank(rows: pd.DataFrame, name: str) -> str:
     if len(rows) < 3:
         return "–"
@@ -147,7 +153,7 @@ def _groups(pairs: Sequence[Pair], of: Callable[[Pair], str]) -> str:
         for fidelity in _WORDS:
             last = _last(pair for pair in mine if pair.fidelity == fidelity)
             cells.append(_both(last["tip_error"], percent=True) if len(last) else "–")
-            cells.append(_both(_force_errors(last), percent=True) if len(last) else "–")
+            cells.append(_forces(last) if len(last) else "–")
         rows.append(cells)
     return table(
         ["", "designs", "cells: tip", "cells: force", "pieces: tip", "pieces: force"], rows
@@ -164,7 +170,7 @@ def _by_pressure(pairs: Sequence[Pair]) -> str:
         for fidelity in _WORDS:
             mine = group[group["fidelity"] == fidelity]
             cells.append(_both(mine["tip_error"], percent=True))
-            cells.append(_both(_force_errors(mine), percent=True))
+            cells.append(_forces(mine))
         rows.append(cells)
     return table(
         ["", "designs", "cells: tip", "cells: force", "pieces: tip", "pieces: force"], rows
@@ -234,7 +240,7 @@ def _errors(pairs: Sequence[Pair], count: int, exact: int = 0) -> list[str]:
     return [
         f"{len(pairs) + exact} of {count}",
         _three(last["tip_error"], exact),
-        _three(_force_errors(last), exact),
+        f"{_three(_force_errors(last), exact)} ({len(_force_errors(last)) + exact})",
         f"{np.median(seconds):.2f} / {seconds.mean():.2f}",
     ]
 

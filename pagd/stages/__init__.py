@@ -18,7 +18,7 @@ STAGE_VERSIONS = {
     "solve": 11,
     "metrics": 5,
     "screening": 5,
-    "fronts": 3,
+    "fronts": 4,
     "figures": 3,
     "generative_figures": 4,
     "summary": 5,

@@ -428,7 +428,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
         "<dd>990 ok, 10 bending limit</dd>",
         "By bending, twist, blocked force at once, generated designs do more: 23 % more in volume,"
         " 160 designs of either kind, drawn from 1,210 generated and 480 training designs,"
-        " p = 0.013. Of their common front 68 % are generated.",
+        " p = 0.013. Of the front of such a draw 68 % are generated.",
     ):
         assert fact in text
     assert cells(re.search(r"<tr><th>generated designs.*?</tr>", text).group())[-1] == "7 of 7"

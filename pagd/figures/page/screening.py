@@ -23,7 +23,7 @@ so that it is of those that curl moderately. The volume is that of all combinati
 objectives that a design of a draw reaches or exceeds; in brackets the middle 95 % of the
 draws. p is how often labels given at random make as much of a difference. Designs that fail
 count as designs that do nothing.</p>"""
-# Differences that labels given at random make more rarely are called certain.
+# Differences are called certain if labels given at random make any of them more rarely.
 _CERTAIN: Final = 0.05
 _FORCE: Final = "blocked_force_N"
 
@@ -66,10 +66,11 @@ def answer_of(fronts: Mapping[str, Any]) -> str:
     """
     if not fronts["comparisons"]:
         return "Too few designs came to their end to compare generated and training designs."
-    told = [_sentence(each) for each in _of_answer(fronts["comparisons"])]
+    several = len(fronts["comparisons"])
+    told = [_sentence(each, several) for each in _of_answer(fronts["comparisons"])]
     whole = fronts["comparisons"][0]
     share = number(100.0 * whole["share"], 0)
-    return f"{' '.join(told)} Of their common front {share} % are generated."
+    return f"{' '.join(told)} Of the front of such a draw {share} % are generated."
 
 
 def _of_answer(comparisons: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -78,7 +79,8 @@ def _of_answer(comparisons: Sequence[Mapping[str, Any]]) -> list[Mapping[str, An
     return [*free[:1], *([comparisons[0]] if comparisons[0] not in free[:1] else [])]
 
 
-def _sentence(comparison: Mapping[str, Any]) -> str:
+def _sentence(comparison: Mapping[str, Any], several: int) -> str:
+    """One comparison in words; certain is what is so among ``several`` (Bonferroni)."""
     objectives = ", ".join(OBJECTIVES[name] for name in comparison["objectives"])
     better = "more" if comparison["ratio"] > 1.0 else "less"
     of = comparison["compared"]
@@ -87,7 +89,7 @@ def _sentence(comparison: Mapping[str, Any]) -> str:
         f"{comparison['drawn']:,} designs of either kind, drawn from {of['generated']:,} generated "
         f"and {of['training']:,} training designs, p = {number(comparison['p'], 3)}"
     )
-    if comparison["p"] > _CERTAIN:
+    if several * comparison["p"] > _CERTAIN:
         return f"By {objectives} at once no difference is certain: {how}."
     return f"By {objectives} at once, generated designs do {better}: {how}."
 
