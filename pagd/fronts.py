@@ -122,10 +122,16 @@ def _known(frame: pd.DataFrame, names: Sequence[str]) -> FloatArray:
     """
     numbers = frame[list(names)].apply(pd.to_numeric, errors="coerce")
     values = np.array(numbers, dtype=np.float64)
-    if "doubt" in frame:
-        doubted = (frame["doubt"].notna() & (frame["fidelity"] == "cells")).to_numpy()
-        values[np.ix_(doubted, np.isin(list(names), _DOUBTED))] = np.nan
+    values[np.ix_(_is_doubted(frame), np.isin(list(names), _DOUBTED))] = np.nan
     return values
+
+
+def _is_doubted(frame: pd.DataFrame) -> BoolArray:
+    """Which rows (n,) are of cells that the gate doubts."""
+    if "doubt" not in frame:
+        return np.zeros(len(frame), dtype=np.bool_)
+    doubted = frame["doubt"].notna() & (frame["fidelity"] == "cells")
+    return np.asarray(doubted, dtype=np.bool_)
 
 
 def not_dominated(values: FloatArray) -> BoolArray:
@@ -176,10 +182,7 @@ def _comparison(
 def _is_compared(frame: pd.DataFrame, names: Sequence[str]) -> BoolArray:
     """Which rows (n,) have all objectives, or do nothing since they fail, and no doubt of that."""
     ended = frame["status"].isin(_REACHED).to_numpy()
-    sure = np.ones(len(frame), dtype=np.bool_)
-    if "doubt" in frame:
-        sure = ~(frame["doubt"].notna() & (frame["fidelity"] == "cells")).to_numpy()
-    return np.asarray(np.where(ended, known(frame, names), sure), dtype=np.bool_)
+    return np.where(ended, known(frame, names), ~_is_doubted(frame))
 
 
 def _draw(

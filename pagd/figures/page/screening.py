@@ -22,7 +22,7 @@ those that curl most are. Where forces are compared such designs are left out of
 so that it is of those that curl moderately. The volume is that of all combinations of the
 objectives that a design of a draw reaches or exceeds; in brackets the middle 95 % of the
 draws. p is how often labels given at random make as much of a difference. Designs that fail
-count as designs that do nothing.</p>"""
+count as designs that do nothing, unless the gate doubts that they do.</p>"""
 # Differences are called certain if labels given at random make any of them more rarely.
 _CERTAIN: Final = 0.05
 _FORCE: Final = "blocked_force_N"
