@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-__all__ = ["InputError", "PagdError", "StageFailure", "Status"]
+__all__ = ["InputError", "MachineError", "PagdError", "StageFailure", "Status"]
 
 
 class Status(StrEnum):
@@ -19,6 +19,9 @@ class Status(StrEnum):
     self_collision = "self_collision"
     bending_limit = "bending_limit"
     buckled = "buckled"
+    timed_out = "timed_out"
+    out_of_memory = "out_of_memory"
+    crashed = "crashed"
 
 
 class PagdError(Exception):
@@ -27,6 +30,14 @@ class PagdError(Exception):
 
 class InputError(PagdError):
     """The user gave something unusable; the message is one sentence for the user (exit code 2)."""
+
+
+class MachineError(PagdError):
+    """The machine has failed, not the design: the same may well succeed later, or with more.
+
+    A full disk, a process killed from outside, too little time or memory where there may be more
+    (exit code 75, which stands for that in ``sysexits.h``).
+    """
 
 
 class StageFailure(PagdError):

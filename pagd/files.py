@@ -1,7 +1,12 @@
-"""Files that are either complete or absent: written beside their target, then renamed."""
+"""Files that are either complete or absent: written beside their target, then renamed.
+
+What is written is on the disk before it is renamed, so that a power cut leaves the old or the new
+and never a file without its content: a file system may keep a new name and lose what it stands for.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
 import platform
 import re
@@ -13,7 +18,20 @@ from pathlib import Path
 
 from pagd.errors import InputError
 
-__all__ = ["must_exist", "replaced_file", "replaced_folder", "write_text"]
+__all__ = [
+    "SCRATCH",
+    "emptied",
+    "is_abandoned",
+    "must_exist",
+    "replaced_file",
+    "replaced_folder",
+    "write_text",
+]
+
+
+#: Environment variable that names a folder on a disk of the machine itself: folders are made there,
+#: and carried to where they belong as a whole, where that is a disk of a network.
+SCRATCH = "PAGD_SCRATCH"
 
 
 def must_exist(file: Path) -> None:
@@ -35,9 +53,21 @@ def replaced_file(path: Path) -> Iterator[Path]:
     try:
         yield temporary
         temporary.chmod(0o666 & ~_umask())
+        _flush(temporary)
         temporary.replace(path)
+        _flush(path.parent)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def emptied(folder: Path) -> Path:
+    """Remove all that is in a folder; return it."""
+    for one in folder.iterdir():
+        if one.is_dir() and not one.is_symlink():
+            shutil.rmtree(one)
+        else:
+            one.unlink()
+    return folder
 
 
 def write_text(path: Path, text: str) -> None:
@@ -69,13 +99,45 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
     _remove_abandoned(path)
     temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=_own(path)))
     try:
-        yield temporary
+        with _place_to_work(temporary) as work:
+            yield work
+            if work != temporary:
+                shutil.copytree(work, temporary, dirs_exist_ok=True)
         temporary.chmod(0o777 & ~_umask())
+        for one in (*temporary.rglob("*"), temporary):
+            _flush(one)
         if path.exists():
             shutil.rmtree(path)
         temporary.rename(path)
+        _flush(path.parent)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _flush(path: Path) -> None:
+    """Wait until a file's content, or a folder's names, are on the disk."""
+    if path.is_symlink():
+        return
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        # Some file systems of networks have no such thing for folders.
+        if error.errno != errno.EINVAL:
+            raise
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def _place_to_work(temporary: Path) -> Iterator[Path]:
+    """The temporary folder itself, or one on the disk of the machine where ``SCRATCH`` names it."""
+    scratch = os.environ.get(SCRATCH)
+    if not scratch:
+        yield temporary
+        return
+    with tempfile.TemporaryDirectory(dir=scratch, prefix="pagd-") as name:
+        yield Path(name)
 
 
 def _refuse_foreign(path: Path, marker: str) -> None:
@@ -111,6 +173,13 @@ def _remove_abandoned(path: Path, suffix: str = "") -> None:
             shutil.rmtree(other, ignore_errors=True)
         else:
             other.unlink(missing_ok=True)
+
+
+def is_abandoned(path: Path) -> bool:
+    """Whether a file or folder is what a killed process of this host has left of an attempt."""
+    host = re.escape(re.sub("[^A-Za-z0-9-]", "-", platform.node()))
+    found = re.fullmatch(rf"\..+\.{host}\.(\d{{1,9}})\.[a-z0-9_]{{8}}(\.[a-z0-9]+)?", path.name)
+    return found is not None and not _is_alive(int(found[1]))
 
 
 def _is_alive(process: int) -> bool:

@@ -38,7 +38,8 @@ class Record:
     """How one stage ended for one design, what it measured and what made it.
 
     ``figures`` carries units in its keys; ``timings_s`` is in seconds and holds at least
-    ``wall`` and ``cpu`` (children included); ``peak_memory_MB`` is in 10⁶ bytes.
+    ``wall`` and ``cpu`` (children included); ``peak_memory_MB`` is in 10⁶ bytes. ``files`` are
+    those of the folder, see :mod:`pagd.inventory`; older records have none.
     """
 
     stage: str
@@ -50,6 +51,7 @@ class Record:
     versions: dict[str, str | int | None]
     timings_s: dict[str, float]
     peak_memory_MB: float
+    files: dict[str, dict[str, str | int]] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the record as it stands in the file."""

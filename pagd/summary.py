@@ -106,10 +106,10 @@ def performance_row(record: Record) -> dict[str, Any]:
         "status": record.status.value,
         "reason": record.reason,
         "fidelity": "full",
-        # The record's figures were written before the stage itself had ended.
-        "cpu_s": figures["cpu_s"] + own["cpu"],
-        "wall_s": figures["wall_s"] + own["wall"],
-        "peak_memory_MB": max(figures["peak_memory_MB"], record.peak_memory_MB),
+        # The record's figures were written before the stage itself had ended, or not if it crashed.
+        "cpu_s": figures.get("cpu_s", 0.0) + own["cpu"],
+        "wall_s": figures.get("wall_s", 0.0) + own["wall"],
+        "peak_memory_MB": max(figures.get("peak_memory_MB", 0.0), record.peak_memory_MB),
     }
 
 

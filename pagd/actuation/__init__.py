@@ -10,7 +10,7 @@ from pagd.actuation.body import Body
 from pagd.actuation.free import free_actuation
 from pagd.actuation.result import ActuationResult, Guide, Progress, RecordedState, Stop
 from pagd.actuation.settings import ELEMENTS, SUPPORTS, Actuation
-from pagd.actuation.threads import use_threads
+from pagd.actuation.threads import threads_are_started, use_threads
 
 __all__ = [
     "ELEMENTS",
@@ -24,5 +24,6 @@ __all__ = [
     "Stop",
     "blocked_force",
     "free_actuation",
+    "threads_are_started",
     "use_threads",
 ]

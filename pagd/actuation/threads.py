@@ -6,6 +6,15 @@ import os
 
 from threadpoolctl import threadpool_limits
 
+__all__ = ["threads_are_started", "use_threads"]
+
+
+def threads_are_started() -> bool:
+    """Whether the kernels have started their threads, which do not survive a fork."""
+    from numba.np.ufunc import parallel
+
+    return bool(parallel._is_initialized)  # Numba has no call for it
+
 
 def use_threads(count: int) -> None:
     """Let the kernels and the linear solver use ``count`` threads.

@@ -85,6 +85,18 @@ def add_stage_options(command: argparse.ArgumentParser) -> None:
     )
     add_config(command)
     add_verbose(command)
+    _add_limits(command)
+
+
+def _add_limits(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--allotted",
+        nargs=3,
+        type=float,
+        metavar=("MIN", "MB", "TRIES"),
+        help="minutes and memory of the job, of which the stage may take nine tenths; beyond them "
+        "the design has failed or, if tries with more are to follow, the exit code is 75",
+    )
 
 
 def add_out(command: argparse.ArgumentParser) -> None:

@@ -87,7 +87,7 @@ def mesh(options: Namespace) -> int:
 
 def solve(options: Namespace) -> int:
     """Run the stage solve, on a mesh of ours or on the user's own."""
-    _use_threads(options.threads)
+    threads = checked_threads(options.threads)
     from pagd.stages import solve as stage
 
     config = config_of(options)
@@ -99,6 +99,7 @@ def solve(options: Namespace) -> int:
         name=_name(options),
         vtu=options.vtu,
         progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
+        threads=threads,
     )
     return verdict(record, options.keep_going)
 
@@ -183,7 +184,7 @@ def page(options: Namespace) -> int:
 
 def run_all(options: Namespace) -> int:
     """Run all stages of one design, each in a folder of its own under ``--out``."""
-    _use_threads(options.threads)
+    threads = checked_threads(options.threads)
     from pagd.stages import chain
     from pagd.stages.solve import materials_of
 
@@ -195,16 +196,10 @@ def run_all(options: Namespace) -> int:
         materials_of(config, options.material, options.paper),
         vtu=options.vtu,
         progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
+        threads=threads,
     )
     print_result(record)
     return verdict(record, options.keep_going)
-
-
-def _use_threads(count: int) -> None:
-    checked_threads(count)
-    from pagd.actuation import use_threads
-
-    use_threads(count)
 
 
 def _name(options: Namespace) -> str | None:

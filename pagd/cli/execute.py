@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
 from collections.abc import Sequence
 
+from pagd.cli.options import limits_of
 from pagd.cli.output import start_log
 from pagd.cli.parser import make_parser
-from pagd.errors import InputError, StageFailure
+from pagd.errors import InputError, MachineError, StageFailure
+from pagd.limits import under
 
-__all__ = ["FAULT", "INTERRUPTED", "execute"]
+__all__ = ["AGAIN", "FAULT", "INTERRUPTED", "execute"]
 
 #: Exit codes.
-FAILED, BAD_INPUT, FAULT, INTERRUPTED = 1, 2, os.EX_SOFTWARE, 130
+FAILED, BAD_INPUT, FAULT, AGAIN, INTERRUPTED = 1, 2, os.EX_SOFTWARE, os.EX_TEMPFAIL, 130
+
+# What the machine lacks, no traceback explains.
+_OF_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE)
 
 
 def execute(arguments: Sequence[str]) -> int:
@@ -22,15 +28,26 @@ def execute(arguments: Sequence[str]) -> int:
     options = make_parser().parse_args(arguments)
     start_log(options.verbose)
     try:
-        code: int = options.handler(options)
+        with under(limits_of(options)):
+            code: int = options.handler(options)
         return code
     except InputError as error:
         return _complain(error, BAD_INPUT)
     except StageFailure as failure:
         return _complain(f"{failure.status}: {failure.reason}", FAILED)
+    except MachineError as error:
+        return _complain(error, AGAIN)
     except KeyboardInterrupt:
         return _complain("interrupted", INTERRUPTED)
-    except Exception:
+    except BrokenPipeError:
+        # Whoever reads has read enough (`pagd status | head`); nor can anything be told at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in _OF_MACHINE:
+            return _complain(f"{error}; nothing half-written is left", AGAIN)
+        if isinstance(error, MemoryError):
+            return _complain("the machine has no memory left for this", AGAIN)
         # Python would exit with 1, which says that the design failed.
         traceback.print_exc()
         return _complain("this is a fault of pagd; please report it", FAULT)

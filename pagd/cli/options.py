@@ -7,8 +7,12 @@ from typing import Any
 
 from pagd import config as configuration
 from pagd.errors import InputError
+from pagd.limits import Limits
 
-__all__ = ["checked_threads", "config_of"]
+__all__ = ["checked_threads", "config_of", "limits_of"]
+
+# Of what a job has been allotted, what is around the stage takes the rest.
+_SHARE = 0.9
 
 
 def config_of(options: Namespace) -> dict[str, Any]:
@@ -30,3 +34,17 @@ def checked_threads(count: int, option: str = "--threads") -> int:
     if count < 1:
         raise InputError(f"{option} = {count} must be at least 1.")
     return count
+
+
+def limits_of(options: Namespace) -> Limits | None:
+    """Return the limits for a stage; none where the options tell of nothing allotted."""
+    given = vars(options).get("allotted")
+    if given is None:
+        return None
+    minutes, memory, tries = given
+    if not (minutes > 0 and memory > 0 and tries >= 0):
+        raise InputError(
+            f"--allotted = {minutes:g} {memory:g} {tries:g} must be minutes and megabytes greater "
+            "than 0, and a number of tries of at least 0."
+        )
+    return Limits(time_s=60 * _SHARE * minutes, memory_MB=_SHARE * memory, final=tries == 0)

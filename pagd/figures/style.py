@@ -98,6 +98,9 @@ STATUS_COLOURS: Final = {
     "overstretched": "#d55e00",
     "buckled": "#cc79a7",
     "not_converged": "#8c6d31",
+    "timed_out": "#b5912f",
+    "out_of_memory": "#7f2a3c",
+    "crashed": "#e0218a",
     "mesh_failed": "#6b4c9a",
     "invalid_geometry": "#1d2733",
 }

@@ -22,8 +22,12 @@ def run(
     *,
     vtu: bool = False,
     progress: Progress | None = None,
+    threads: int | None = None,
 ) -> Record:
-    """Run every stage into its own folder under ``out``; returns the record of the metrics."""
+    """Run every stage into its own folder under ``out``; returns the record of the metrics.
+
+    ``vtu``, ``progress`` and ``threads`` are those of :func:`pagd.stages.solve.run`.
+    """
     at = {
         stage: out / stage
         for stage in ("geometry", "repair", "mesh", "solve", "metrics", "figures")
@@ -31,7 +35,9 @@ def run(
     geometry.run(named, at["geometry"], config)
     repair.run(at["geometry"], at["repair"], config)
     mesh.run(at["geometry"], at["repair"], at["mesh"], config)
-    solve.run(at["mesh"], at["solve"], config, materials, vtu=vtu, progress=progress)
+    solve.run(
+        at["mesh"], at["solve"], config, materials, vtu=vtu, progress=progress, threads=threads
+    )
     folders = metrics.Folders(
         mesh=at["mesh"], solve=at["solve"], geometry=at["geometry"], repair=at["repair"]
     )

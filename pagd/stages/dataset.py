@@ -14,7 +14,8 @@ from pagd.config import known_tables, part
 from pagd.dataset import make_dataset, read_frame, write_frame
 from pagd.errors import InputError
 from pagd.files import must_exist
-from pagd.record import Meter, Record, read_record
+from pagd.inventory import read_sound_record
+from pagd.record import Meter, Record
 from pagd.stages.geometry import rules_of
 from pagd.stages.stage import ALL_DESIGNS, Outcome, run_stage
 
@@ -92,7 +93,7 @@ def record_of(name: str, stage: str, folder: Path, dataset: Path) -> Record:
     InputError
         If the folder is of another stage, or made of another data set.
     """
-    record = read_record(folder)
+    record = read_sound_record(folder)
     if record.stage != stage:
         raise InputError(
             f"{name} = {folder} must be a folder of the stage {stage}, "

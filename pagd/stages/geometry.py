@@ -10,7 +10,6 @@ from typing import Any
 
 from pagd.catalogue import NamedDesign, design_from
 from pagd.design import GeometryRules, base_volume, body_volume, cavity_volume, check
-from pagd.files import write_text
 from pagd.geometry import openscad_version, render, write_design_scad
 from pagd.record import Meter, Record
 from pagd.stages.stage import Outcome, run_stage
@@ -35,7 +34,6 @@ def run(named: NamedDesign, out: Path, config: Mapping[str, Any]) -> Record:
     rules = rules_of(config)
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
-        write_text(folder / DESIGN_NAME, named.as_json() + "\n")
         check(named.design, rules)
         write_design_scad(named.design, rules, folder / "design.scad")
         with meter.part("openscad"):
@@ -52,6 +50,7 @@ def run(named: NamedDesign, out: Path, config: Mapping[str, Any]) -> Record:
             **{key: config[key] for key in ("channel", "limits", "geometry")},
         },
         libraries={"openscad": openscad_version()},
+        given={DESIGN_NAME: named.as_json() + "\n"},
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from pagd.design import Channel
 from pagd.errors import InputError, StageFailure, Status
+from pagd.inventory import read_sound_record
 from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
@@ -61,7 +62,7 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
     config
         Completed configuration; uses ``mesh``.
     """
-    drawn, repaired = read_record(geometry), read_record(repair)
+    drawn, repaired = read_sound_record(geometry), read_sound_record(repair)
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         half = config["mesh"]["half_model"] and (repair / "body_half.stl").is_file()

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pagd.errors import InputError, Status
 from pagd.fem.contact import ContactLaw
+from pagd.inventory import read_sound_record
 from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
@@ -29,7 +30,7 @@ from pagd.metrics import (
     performance,
     strain_columns,
 )
-from pagd.record import Meter, Record, read_record
+from pagd.record import Meter, Record
 from pagd.sections import Stations, stations_of
 from pagd.stages.geometry import read_design
 from pagd.stages.mesh import identity, mesh_file
@@ -63,7 +64,7 @@ class Folders:
     def records(self) -> list[Record]:
         """Return the records of the stages before, in order."""
         stages = (self.geometry, self.repair, self.mesh, self.solve)
-        return [read_record(folder) for folder in stages if folder and not folder.is_file()]
+        return [read_sound_record(folder) for folder in stages if folder and not folder.is_file()]
 
 
 def run(folders: Folders, out: Path, config: Mapping[str, Any], sections: int = 11) -> Record:

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pagd.record import Meter, Record, read_record
+from pagd.inventory import read_sound_record
+from pagd.record import Meter, Record
 from pagd.repair import repair
 from pagd.stages.stage import Outcome, run_stage
 
@@ -28,7 +29,7 @@ def run(geometry: Path, out: Path, config: Mapping[str, Any]) -> Record:
     config
         Completed configuration; uses ``repair``.
     """
-    drawn = read_record(geometry)
+    drawn = read_sound_record(geometry)
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         for surface in [name for name in _COMPONENTS if (geometry / f"{name}.stl").is_file()]:

@@ -17,17 +17,19 @@ from pagd.actuation import (
     Stop,
     blocked_force,
     free_actuation,
+    use_threads,
 )
 from pagd.config import material_file
 from pagd.design import Design
 from pagd.documents import read_document
 from pagd.errors import InputError
+from pagd.inventory import read_sound_record
 from pagd.materials import Elastomer, Sheet, Use, elastomer, find_material, sheet
 from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.msh import read_msh
 from pagd.mesh.types import Mesh
 from pagd.metrics import work_of_pressure
-from pagd.record import Meter, Record, read_record
+from pagd.record import Meter, Record
 from pagd.reduced.guide import RowGuide
 from pagd.reduced.row import unlike_their_neighbours
 from pagd.self_collision import self_collision_stop
@@ -97,6 +99,7 @@ def run(
     name: str | None = None,
     vtu: bool = False,
     progress: Progress | None = None,
+    threads: int | None = None,
 ) -> Record:
     """Solve an actuator: free, then with its tip held unless the configuration says otherwise.
 
@@ -120,8 +123,10 @@ def run(
         Also write the states for ParaView, to ``vtu/``.
     progress
         Told pressure (kPa) and iterations of every converged step.
+    threads
+        Threads of kernels and linear solver; None leaves them as they are.
     """
-    upstream = [read_record(mesh)] if mesh.is_dir() else []
+    upstream = [read_sound_record(mesh)] if mesh.is_dir() else []
     file = mesh_file(mesh)
     settings = dict(config["solve"])
     limit = settings.pop("bending_limit_deg")
@@ -129,6 +134,9 @@ def run(
     actuation = Actuation(**settings | {"gravity_m_s2": tuple(settings["gravity_m_s2"])})
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
+        if threads is not None:
+            # Not before: a process that has started its threads cannot be forked.
+            use_threads(threads)
         with meter.part("read"):
             read = read_msh(file)
             body = Body(read, materials.elastomer, materials.paper, actuation)

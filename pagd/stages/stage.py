@@ -9,6 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from pagd.errors import StageFailure, Status
+from pagd.files import emptied
+from pagd.inventory import inventory
+from pagd.limits import in_force, run_apart
 from pagd.record import Meter, Record, stage_folder, versions, write_record
 from pagd.stages import STAGE_VERSIONS
 
@@ -47,6 +50,7 @@ def run_stage(
     upstream: Sequence[Record] = (),
     goes_on: bool = False,
     libraries: Mapping[str, str | None] | tuple[str, ...] = (),
+    given: Mapping[str, str] | None = None,
 ) -> Record:
     """Run one stage of one design and leave its folder.
 
@@ -68,14 +72,29 @@ def run_stage(
         … unless what it left is enough for this stage.
     libraries
         Packages whose versions the record names.
+    given
+        Files, name and text, that the folder has whatever becomes of the work.
+
+    Raises
+    ------
+    MachineError
+        Under limits (:mod:`pagd.limits`), where more of them may help.
+
+    Notes
+    -----
+    Under limits the work is done in a process of its own. Limits exceeded for good are then how
+    the design ends, and so is a crash.
     """
     meter, outcome = Meter(), Outcome()
     failed = next((record for record in upstream if record.status is not Status.ok), None)
     with stage_folder(out) as folder:
         if failed is None or goes_on:
-            _attempt(work, folder, outcome, meter)
+            outcome = _attempt(work, folder, outcome, meter)
+        for name, text in (given or {}).items():
+            (folder / name).write_text(text, encoding="utf-8")
         if failed is not None:
             outcome.end(failed.status, failed.reason)
+        files = inventory(folder)
         record = Record(
             stage=stage,
             design_id=design_id,
@@ -86,17 +105,35 @@ def run_stage(
             versions=versions(STAGE_VERSIONS[stage], libraries),
             timings_s=meter.timings_s(),
             peak_memory_MB=meter.peak_memory_MB(),
+            files=files,
         )
         write_record(record, folder)
     _report(record)
     return record
 
 
-def _attempt(work: Work, folder: Path, outcome: Outcome, meter: Meter) -> None:
+def _attempt(work: Work, folder: Path, outcome: Outcome, meter: Meter) -> Outcome:
+    """Do the work; the outcome, with what it has found out until it failed, if it did."""
+    limits = in_force()
+    if limits is None:
+        return _done(work, folder, outcome, meter)
+    try:
+        found, parts = run_apart(lambda: (_done(work, folder, outcome, meter), meter.parts), limits)
+    except StageFailure as failure:
+        # Of what a process has found out that is gone, nothing is known; its files may be halves.
+        emptied(folder)
+        outcome.end(failure.status, failure.reason)
+        return outcome
+    meter.parts = parts
+    return found
+
+
+def _done(work: Work, folder: Path, outcome: Outcome, meter: Meter) -> Outcome:
     try:
         work(folder, outcome, meter)
     except StageFailure as failure:
         outcome.end(failure.status, failure.reason)
+    return outcome
 
 
 def _report(record: Record) -> None:

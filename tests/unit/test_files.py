@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pagd.errors import InputError
-from pagd.files import replaced_file, replaced_folder, write_text
+from pagd.files import SCRATCH, replaced_file, replaced_folder, write_text
 
 
 def test_a_file_replaces_the_older_one(tmp_path: Path) -> None:
@@ -75,7 +75,7 @@ def test_files_follow_the_umask(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from pagd.files import replaced_file, replaced_folder
+from pagd.files import SCRATCH, replaced_file, replaced_folder
 root = Path(sys.argv[1])
 with replaced_folder(root / "solve", "mark") as folder, replaced_file(root / "a.csv") as file:
     (folder / "half").touch()
@@ -108,3 +108,46 @@ def test_what_others_write_is_left_alone(tmp_path: Path) -> None:
         pass
     assert not left.exists()
     assert all(folder.is_dir() for folder in foreign)
+
+
+def test_a_folder_is_made_on_the_scratch_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scratch, target = tmp_path / "scratch", tmp_path / "far" / "stage"
+    scratch.mkdir()
+    monkeypatch.setenv(SCRATCH, str(scratch))
+    with replaced_folder(target, "mark") as folder:
+        assert folder.parent == scratch
+        (folder / "mark").touch()
+        (folder / "inner").mkdir()
+        (folder / "inner" / "file").write_text("carried")
+    assert (target / "inner" / "file").read_text() == "carried"
+    assert list(scratch.iterdir()) == []
+    with pytest.raises(RuntimeError):
+        crash_in_folder(target)
+    assert list(scratch.iterdir()) == []
+    assert [path.name for path in target.parent.iterdir()] == ["stage"]
+
+
+def test_what_is_renamed_is_on_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every file and folder is flushed before the rename, and the name after it."""
+    seen: list[str] = []
+    sync, rename = os.fsync, Path.rename
+
+    def note_sync(descriptor: int) -> None:
+        seen.append(Path(f"/proc/self/fd/{descriptor}").readlink().name)
+        sync(descriptor)
+
+    def note_rename(self: Path, target: Path) -> Path:
+        seen.append("renamed")
+        return rename(self, target)
+
+    monkeypatch.setattr(os, "fsync", note_sync)
+    monkeypatch.setattr(Path, "rename", note_rename)
+    with replaced_folder(tmp_path / "stage", "mark") as folder:
+        (folder / "mark").touch()
+        (folder / "inner").mkdir()
+        (folder / "inner" / "file").touch()
+    before, after = seen[: seen.index("renamed")], seen[seen.index("renamed") + 1 :]
+    assert {"mark", "inner", "file", folder.name} <= set(before)
+    assert after == [tmp_path.name]
