@@ -62,7 +62,7 @@ def _measured(name: str) -> Memory:
     import psutil
 
     from pagd.actuation import use_threads
-    from pagd.cli.preload import load_kernels
+    from pagd.fem.compiled import load_kernels
     from pagd.fem.linear_solver import PardisoSolver
     from performance.bounds import body_of
 

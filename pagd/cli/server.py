@@ -133,7 +133,8 @@ class _Server:
         self._selector.register(connection, selectors.EVENT_READ, process)
 
     def _load(self) -> None:
-        from pagd.cli.preload import load_kernels, preload
+        from pagd.cli.preload import preload
+        from pagd.fem.compiled import load_kernels
 
         if self._kernels is None:
             self._kernels = preload()

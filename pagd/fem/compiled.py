@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.registry import CPUDispatcher
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -28,3 +30,30 @@ def _compile(function: Function, parallel: bool) -> Function:
     # A compiled function is called as the plain one is, and typed as such.
     decorate = numba.njit(cache=True, fastmath=_FAST, error_model="numpy", parallel=parallel)
     return cast(Function, decorate(function))
+
+
+def load_kernels() -> int:
+    """Load the kernels of one thread that Numba has on disk; return how many there are.
+
+    Those with parallel loops start threads when they are loaded, and are left to the processes that
+    are forked from this one. Numba has no call for this: where what is used here has changed,
+    nothing is loaded.
+    """
+    found: dict[int, Any] = {
+        id(value): value
+        for name, module in list(sys.modules.items())
+        if name.startswith("pagd.")
+        for value in list(vars(module).values())
+        if isinstance(value, CPUDispatcher) and not value.targetoptions.get("parallel")
+    }
+    return sum(_load(dispatcher) for dispatcher in found.values())
+
+
+def _load(dispatcher: Any) -> int:
+    try:
+        signatures = [key[0] for key in dispatcher._cache._cache_file._load_index()]
+        for signature in signatures:
+            dispatcher.compile(signature)
+    except Exception:  # the worker that needs it will tell
+        return 0
+    return len(signatures)

@@ -24,9 +24,11 @@ import numpy as np
 from pagd import __version__
 from pagd.catalogue import NamedDesign
 from pagd.config import part, refusal_of_cells
-from pagd.errors import InputError, Status
+from pagd.errors import InputError, StageFailure, Status
 from pagd.files import replaced_folder, write_text
-from pagd.record import Meter, Record, read_record
+from pagd.inventory import read_sound_record
+from pagd.limits import Limits, run_apart
+from pagd.record import Meter, Record
 from pagd.stages import STAGE_VERSIONS
 from pagd.stages.gate import FAULTS, doubt_of, gated
 from pagd.stages.reduced import CELLS, PIECES, Reduced, analyse
@@ -50,6 +52,9 @@ TABLES: dict[str, tuple[Column, ...]] = {
 
 # Designs of a batch: some ten seconds of work are what an end without warning costs.
 _BATCH = 10
+# Far more than any design has taken, in full too: what hangs or swells is to be told from the rest.
+_LONGEST_S = 900.0
+_LARGEST_MB = 6000.0
 _KEY_NAME = "key.json"
 # Part of the meaning of parts, not a draw of the science.
 _SEED_OF_PARTS = 0
@@ -166,7 +171,7 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
         If a folder is no screening, they were not made with the same configuration, or a design is
         in two of them.
     """
-    records = [read_record(part) for part in parts]
+    records = [read_sound_record(part) for part in parts]
     made_of = records[0].configuration if records else {}
     for one, record in zip(parts, records, strict=True):
         if record.stage != "screening":
@@ -264,27 +269,29 @@ def _statuses(
 ) -> Iterator[list[str]]:
     """How the designs of the batches end, batch by batch as they come."""
     if processes == 1:
-        _one_thread()
+        _prepare()
         yield from (_batch(batch, *how) for batch in left)
         return
     # Threads of OpenMP do not survive a fork.
     context = get_context("spawn")
-    with ProcessPoolExecutor(processes, context, initializer=_one_thread) as pool:
+    with ProcessPoolExecutor(processes, context, initializer=_prepare) as pool:
         for future in as_completed([pool.submit(_batch, batch, *how) for batch in left]):
             yield future.result()
 
 
-def _one_thread() -> None:
-    from pagd.actuation import use_threads
+def _prepare() -> None:
+    """Load what is compiled, for the forks that do the work."""
+    import pagd.stages.solve  # noqa: F401
+    from pagd.fem.compiled import load_kernels
 
-    use_threads(1)
+    load_kernels()
 
 
 def _batch(
     batch: _Batch, config: Mapping[str, Any], materials: Materials, fidelity: str
 ) -> list[str]:
     """Analyse the designs of a batch; the statuses they end with."""
-    found = [_safely(named, config, materials, fidelity) for named in batch.designs]
+    found = _analysed(batch.designs, (config, materials, fidelity))
     with replaced_folder(batch.folder, _KEY_NAME) as folder:
         write_rows(
             folder / "performance.parquet",
@@ -304,6 +311,35 @@ def _batch(
 _NAMES = tuple(column.name for column in PERFORMANCE)
 
 
+def _analysed(
+    designs: Sequence[NamedDesign], how: tuple[Mapping[str, Any], Materials, str]
+) -> list[Reduced]:
+    """The results of designs: by a fork, and one by one where one of them ends it."""
+    from pagd.actuation import threads_are_started, use_threads
+
+    def all_of(some: Sequence[NamedDesign]) -> list[Reduced]:
+        use_threads(1)
+        return [_safely(named, *how) for named in some]
+
+    if threads_are_started():  # in a process that has had other work: it cannot be forked
+        return all_of(designs)
+    try:
+        return run_apart(lambda: all_of(designs), _of_so_many(len(designs)))
+    except StageFailure as failure:
+        if len(designs) == 1:
+            return [_ended(designs[0], how[2], failure)]
+    return [result for named in designs for result in _analysed([named], how)]
+
+
+def _of_so_many(designs: int) -> Limits:
+    return Limits(time_s=_LONGEST_S * designs, memory_MB=_LARGEST_MB)
+
+
+def _ended(named: NamedDesign, fidelity: str, failure: StageFailure) -> Reduced:
+    """The row of a design whose process has crashed, or was ended."""
+    return Reduced(_row_of(named, fidelity, failure.status, failure.reason), {}, {}, {})
+
+
 def _safely(
     named: NamedDesign, config: Mapping[str, Any], materials: Materials, fidelity: str
 ) -> Reduced:
@@ -317,17 +353,21 @@ def _safely(
         return found
     except FAULTS as error:
         told = f"A fault of the analysis: {type(error).__name__}: {error}"
-        row = {
-            "design_id": named.name,
-            "name": named.name,
-            "origin": named.origin,
-            "mode": named.design.mode,
-            "fidelity": CELLS if fidelity == GATED else fidelity,
-            "status": Status.not_converged.value,
-            "reason": told,
-            "doubt": told,
-        }
-        return Reduced(row, {}, {}, {})
+        return Reduced(_row_of(named, fidelity, Status.not_converged, told), {}, {}, {})
+
+
+def _row_of(named: NamedDesign, fidelity: str, status: Status, told: str) -> dict[str, Any]:
+    """The row of a design of which nothing is known but how it has ended."""
+    return {
+        "design_id": named.name,
+        "name": named.name,
+        "origin": named.origin,
+        "mode": named.design.mode,
+        "fidelity": CELLS if fidelity == GATED else fidelity,
+        "status": status.value,
+        "reason": told,
+        "doubt": told,
+    }
 
 
 def _stacked(tables: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -268,6 +270,34 @@ def test_a_fault_of_a_design_is_told_and_the_others_go_on(
     assert {row["status"] for row in rows} == {"not_converged"}
     assert all("RuntimeError: no such thing" in row["doubt"] for row in rows)
     assert read_record(tmp_path / "out").figures["cpu_s_median"] == 0.0
+
+
+CRASHING = """
+import os, signal, sys
+from pagd.cli import main
+from pagd.stages import screening
+
+analyse = screening.analyse
+
+def crashing(named, *arguments, **options):
+    if named.name == "slanted":
+        os.kill(os.getpid(), signal.SIGABRT)
+    return analyse(named, *arguments, **options)
+
+screening.analyse = crashing
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_design_that_crashes_takes_no_other_with_it(table: Path, tmp_path: Path) -> None:
+    # A process of its own: those of the tests have started threads, and cannot be forked.
+    words = ["screen", str(table), "--out", str(tmp_path / "out"), "--config", CONFIG]
+    subprocess.run([sys.executable, "-c", CRASHING, *words], check=True)
+    rows = {row["design_id"]: row for row in read_rows(tmp_path / "out" / "performance.parquet")}
+    statuses = {name: row["status"] for name, row in rows.items()}
+    assert statuses == {"straight": "ok", "slanted": "crashed", "flat": "invalid_geometry"}
+    assert "SIGABRT" in rows["slanted"]["doubt"]
+    assert rows["straight"]["bending_deg"] > 1
 
 
 def test_forces_that_none_were_found_of_are_told(
