@@ -18,6 +18,7 @@ from pagd.cli.arguments import (
     override,
 )
 from pagd.cli.generative_parser import add_generative
+from pagd.errors import Status
 
 __all__ = ["make_parser"]
 
@@ -29,7 +30,8 @@ examples:
   pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
   pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
 
-exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a fault of pagd
+exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a fault of pagd,
+75 the machine failed (disk, memory, time): the same may succeed later
 """
 
 
@@ -55,6 +57,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_metrics(commands)
     _add_figures(commands)
     _add_gathering(commands)
+    _add_keeping(commands)
     add_generative(commands)
     return parser
 
@@ -222,4 +225,39 @@ def _add_gathering(commands: Any) -> None:
         type=Path,
         metavar="DIR",
         help="folder of stage dataset: also tell how far each design is from the nearest in it",
+    )
+
+
+def _add_keeping(commands: Any) -> None:
+    status = add_command(
+        commands, "status", "keeping:status", "how far a run is: counts, rate, what failed"
+    )
+    audit = add_command(
+        commands, "audit", "keeping:audit", "whether the files of a run are still what they were"
+    )
+    for command in (status, audit):
+        command.add_argument(
+            "results",
+            type=Path,
+            nargs="?",
+            default=Path("results"),
+            metavar="FOLDER",
+            help="folder of the run (default: %(default)s)",
+        )
+        add_verbose(command)
+    add_config(status)
+    status.add_argument("--json", action="store_true", help="all of it, for machines")
+    audit.add_argument("--quick", action="store_true", help="compare the sizes of files alone")
+    audit.add_argument(
+        "--discard",
+        action="store_true",
+        help="remove what is damaged, with what was made of it: the next run makes it again",
+    )
+    audit.add_argument(
+        "--again",
+        nargs="+",
+        choices=[one.value for one in Status],
+        default=[],
+        metavar="STATUS",
+        help="treat designs that ended so as damaged: crashed, timed_out, …",
     )
