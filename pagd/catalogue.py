@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,10 @@ from pagd.errors import InputError
 from pagd.validation import check, check_each
 
 __all__ = ["NamedDesign", "design_from", "read_designs"]
+
+
+# A tenth of the smallest side of the sampling box, and more than the largest one is in metres.
+_SMALLEST_SIDE_MM = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,7 +56,9 @@ def design_from(source: str) -> NamedDesign:
     # A file's name serves as the name of a design that has none.
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(file).stem).strip("-") or "design"
     row = {"name": name, "origin": "own", **given}
-    check(row, "designs", f"design {file or row['name']}")
+    where = f"design {file or row['name']}"
+    check(row, "designs", where)
+    _check_unit(where, row)
     return NamedDesign.from_row(row)
 
 
@@ -80,6 +87,8 @@ def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str
     rows = [row for origin, path in tables.items() for row in _rows(Path(path), origin)]
     if checked:
         check_each(rows, "designs")
+        for where, row in rows:
+            _check_unit(where, row)
     return _by_name((where, NamedDesign.from_row(row)) for where, row in rows)
 
 
@@ -94,10 +103,29 @@ def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
 
 def _rows_of_csv(path: Path) -> list[dict[str, Any]]:
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file, restkey="(no heading)", strict=True))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        # Spreadsheets put a byte-order mark before the text.
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file, restkey="(no heading)", strict=True)
+            _check_heading(path, reader.fieldnames or [])
+            return list(reader)
+    except UnicodeDecodeError as error:
+        raise InputError(f"table of designs {path}: must be UTF-8 text ({error}).") from None
+    except (OSError, csv.Error) as error:
         raise InputError(f"table of designs {path}: cannot be read ({error}).") from None
+
+
+def _check_heading(path: Path, columns: Sequence[str]) -> None:
+    """Refuse a table that is none; what its columns are called is for the schema."""
+    if not columns:
+        raise InputError(f"table of designs {path}: is empty, and must have a row of headings.")
+    if len(columns) == 1 and any(mark in columns[0] for mark in ";\t|"):
+        raise InputError(
+            f"table of designs {path}: columns must be separated by commas (the heading is "
+            f"{columns[0]!r})."
+        )
+    twice = next((name for name, count in Counter(columns).items() if count > 1), None)
+    if twice is not None:
+        raise InputError(f"table of designs {path}: must have one column {twice}, not two.")
 
 
 def _rows_of_parquet(path: Path) -> list[dict[str, Any]]:
@@ -107,6 +135,8 @@ def _rows_of_parquet(path: Path) -> list[dict[str, Any]]:
 
     # A design is its independent parameters: the rest is computed anew, and cannot contradict them.
     left_out = {column.name for column in GENERATED} - {*PARAMETERS, "origin"}
+    # Nor is the index that pandas adds to what has been filtered.
+    left_out |= {f"__index_level_{level}__" for level in range(2)}
     return [
         {"name": row.get("design_id")} | {k: v for k, v in row.items() if k not in left_out}
         for row in read_rows(path)
@@ -123,6 +153,14 @@ def _number(text: str) -> float | str:
     # What is no number stays as it is, for the schema to refuse it by its name.
     number = as_number(text)
     return text if number is None else number
+
+
+def _check_unit(where: str, row: Mapping[str, Any]) -> None:
+    """Refuse lengths that can only be metres: no actuator is so small, and all would fail."""
+    sides = {key: row[key] for key in ("L", "W", "H")}
+    if all(0 < side < _SMALLEST_SIDE_MM for side in sides.values()):
+        told = ", ".join(f"{key} = {side:g}" for key, side in sides.items())
+        raise InputError(f"{where}: {told}: lengths must be in mm, and these look like metres.")
 
 
 def _by_name(designs: Iterable[tuple[str, NamedDesign]]) -> dict[str, NamedDesign]:

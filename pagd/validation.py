@@ -16,6 +16,9 @@ __all__ = ["check", "check_each", "defaults", "faults", "schema"]
 
 Schema: TypeAlias = dict[str, Any]
 
+# Whoever names another file by mistake need not read all keys that it has too much.
+_TOLD = 4
+
 
 @functools.cache
 def schema(name: str) -> Schema:
@@ -108,10 +111,12 @@ def _enum(key: str, error: Any) -> str:
 
 def _unknown(key: str, error: Any) -> str:
     known = list(error.schema.get("properties", {}))
+    unknown = [f"{key}{'.' if key else ''}{name}" for name in error.instance if name not in known]
+    if len(unknown) > _TOLD:
+        some = f"{', '.join(unknown[:_TOLD])} and {len(unknown) - _TOLD:,} more"
+        return f"{some} are not known keys (known are {', '.join(known)})"
     return "; ".join(
-        f"{key}{'.' if key else ''}{name} is not a known key{_hint(name, known)}"
-        for name in error.instance
-        if name not in known
+        f"{name} is not a known key{_hint(name.rpartition('.')[2], known)}" for name in unknown
     )
 
 
