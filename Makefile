@@ -11,30 +11,34 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep screen test verify peers lint clean distclean system-packages
+.PHONY: help run dataset sweep screen test verify drill peers lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
 
 run: .venv/pagd-installed ## Do all of it: training designs, generated designs, simulation, pictures, page; into results/.
-	snakemake --profile profiles/default --cores $(CORES)
+	python workflow/scripts/run_alone.py --profile profiles/default --cores $(CORES)
 
 dataset: .venv/pagd-installed ## Draw the training designs only: results/dataset/.
-	snakemake --profile profiles/default --cores $(CORES) dataset
+	python workflow/scripts/run_alone.py --profile profiles/default --cores $(CORES) dataset
 
 sweep: .venv/pagd-installed ## Do all of it with all generated designs simulated, 1,000 of them: hours.
-	snakemake --profile profiles/sweep --cores $(CORES)
+	python workflow/scripts/run_alone.py --profile profiles/sweep --cores $(CORES)
 
 screen: .venv/pagd-installed ## Do all of it with all training designs, 11,000 of them, by a chamber each: hours.
-	snakemake --profile profiles/screening --cores $(CORES)
+	python workflow/scripts/run_alone.py --profile profiles/screening --cores $(CORES)
 
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.
+	@setup/system.sh slurm-packages.txt || echo "Without Slurm, its test is left out."
 	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --hypothesis-profile ci --numprocesses $(CORES) --dist loadscope
 
 verify: .venv/pagd-installed ## Compute every row of the verification: docs/verification.md; half an hour at most.
 	@setup/system.sh verification-packages.txt || echo "Without CalculiX, its cases are left out."
 	python tests/verification --processes $(CORES) --out results/verification --page docs/verification.md
+
+drill: .venv/pagd-installed ## Do to small sweeps what happens to large ones, and count what is left; minutes.
+	python benchmarks/drill.py --page docs/sweeps.md
 
 peers: .venv/pagd-installed ## Compare with CalculiX, FElupe and NGSolve: sections of docs/performance.md; hours.
 	@setup/system.sh ../benchmarks/peer-packages.txt

@@ -48,3 +48,7 @@ rule all:
         rules.publish.input,
     message:
         "Tables, pictures and page are complete: open results/report/index.html."
+
+
+onerror:
+    sum_up_what_is_there()

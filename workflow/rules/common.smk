@@ -88,8 +88,26 @@ if SCREENING:
 
 SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
 
+# A job that has taken more than it was allotted, or was killed from outside, is tried once more, with
+# twice as much. What fails by itself leaves a record, and is not tried again.
+RETRIES = 1
+
 # The stages whose meaning is that of a screening too.
 SCREENING_STAGES = ("screening", "mesh", "solve", "metrics")
+
+
+def growing(amount):
+    """The amount of a resource at the first try, twice that at the second."""
+
+    def at(wildcards, attempt):
+        return amount * attempt
+
+    return at
+
+
+def tries_left(wildcards, attempt):
+    """How many tries may follow: at the last one, a limit exceeded is how the design ends."""
+    return max(0, RETRIES + 1 - attempt)
 
 
 def of_generative_half(path):
@@ -194,6 +212,25 @@ def of_drawn_designs(pattern):
         return expand(pattern, design=list(all_designs())[: CONFIG["figures"]["drawn_designs"]])
 
     return paths
+
+
+def sum_up_what_is_there():
+    """The tables of the designs that are done, where a run ends before all are."""
+    from pagd.stages.novelty import novelty_of
+    from pagd.summary import write_gathered, write_summary
+
+    names = TABLES | selected_designs() if GENERATIVE else TABLES
+    folders = [Path("results/designs", name) for name in names]
+    there = [folder for folder in folders if (folder / "metrics" / "record.json").is_file()]
+    if not there:
+        return
+    dataset = Path(rules.dataset.output.dataset)
+    known = GENERATIVE and dataset.is_dir()
+    novelty = novelty_of([folder / "geometry" for folder in there], dataset) if known else {}
+    summary, metrics = Path("results/summary"), [folder / "metrics" for folder in there]
+    write_summary(metrics, summary / "performance.parquet", summary / "summary.csv", novelty)
+    write_gathered(metrics, summary)
+    print(f"{len(there)} of {len(names)} designs are done: results/summary has those.", flush=True)
 
 
 def folders_of(wildcards, input):

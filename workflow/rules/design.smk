@@ -20,9 +20,11 @@ rule prepare:
         mesh="results/logs/mesh/{design}.log",
     benchmark:
         "results/benchmarks/prepare/{design}.tsv"
+    retries: RETRIES
     resources:
-        mem_mb=2000,
-        runtime=40,
+        mem_mb=growing(2000),
+        runtime=growing(40),
+        tries_left=tries_left,
         tmpdir=None,
     params:
         versions=[STAGE_VERSIONS[stage] for stage in ("geometry", "repair", "mesh")],
@@ -34,11 +36,15 @@ rule prepare:
         "Draw, check and mesh design {wildcards.design}."
     shell:
         "pagd geometry --design {params.design:q} --config {params.geometry:q}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.geometry:q} > {log.geometry:q} 2>&1\n"
         "pagd repair --geometry {output.geometry:q} --config {params.repair:q}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.repair:q} > {log.repair:q} 2>&1\n"
         "pagd mesh --geometry {output.geometry:q} --repair {output.repair:q}"
-        " --config {params.mesh:q} --keep-going --out {output.mesh:q} > {log.mesh:q} 2>&1"
+        " --config {params.mesh:q}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
+        " --keep-going --out {output.mesh:q} > {log.mesh:q} 2>&1"
 
 
 rule solve:
@@ -50,11 +56,13 @@ rule solve:
         "results/logs/solve/{design}.log",
     benchmark:
         "results/benchmarks/solve/{design}.tsv"
+    retries: RETRIES
     # One thread a solve: two designs side by side beat one design on two threads.
     threads: 1
     resources:
-        mem_mb=4000,
-        runtime=120,
+        mem_mb=growing(4000),
+        runtime=growing(120),
+        tries_left=tries_left,
         tmpdir=None,
     params:
         version=STAGE_VERSIONS["solve"],
@@ -66,6 +74,7 @@ rule solve:
     shell:
         "pagd solve --mesh {input.mesh:q} --config {params.config:q}"
         " --material {params.material:q} --paper {params.paper:q} --threads {threads}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.solve:q} > {log:q} 2>&1"
 
 
@@ -81,9 +90,11 @@ rule metrics:
         "results/logs/metrics/{design}.log",
     benchmark:
         "results/benchmarks/metrics/{design}.tsv"
+    retries: RETRIES
     resources:
-        mem_mb=1000,
-        runtime=10,
+        mem_mb=growing(1000),
+        runtime=growing(10),
+        tries_left=tries_left,
         tmpdir=None,
     params:
         version=STAGE_VERSIONS["metrics"],
@@ -93,4 +104,5 @@ rule metrics:
     shell:
         "pagd metrics --geometry {input.geometry:q} --repair {input.repair:q}"
         " --mesh {input.mesh:q} --solve {input.solve:q} --config {params.config:q}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.metrics:q} > {log:q} 2>&1"

@@ -1,0 +1,70 @@
+"""Run Snakemake as the only one in this folder, after clearing away what a killed run has left.
+
+    python workflow/scripts/run_alone.py --profile profiles/default --cores 2
+
+A run that was killed leaves Snakemake's lock, and a power cut may leave damaged files. A lock of
+the system, which ends with whoever holds it, tells whether another run is still at work here: then
+this one is refused; else the lock of Snakemake is taken away, and what is damaged by its size
+removed, so that the run makes it again.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import psutil
+
+LOCK = Path(".snakemake") / "run.lock"
+LOCKS_OF_SNAKEMAKE = Path(".snakemake") / "locks"
+
+
+def main(arguments: list[str]) -> int:
+    """Take the place of this process by Snakemake; an exit code where that is not to be."""
+    if not _held(LOCK) or _others():
+        print(f"pagd: another run is at work in {Path.cwd()}; wait for it.", file=sys.stderr)
+        return 2
+    if LOCKS_OF_SNAKEMAKE.is_dir() and any(LOCKS_OF_SNAKEMAKE.iterdir()):
+        print("pagd: a run was cut off here; going on where it was.", file=sys.stderr)
+        _unlock(arguments)
+    if Path("results").is_dir():
+        subprocess.run(["pagd", "audit", "results", "--quick", "--discard"], check=True)
+    os.execvp("snakemake", ["snakemake", *arguments])
+
+
+def _unlock(arguments: list[str]) -> None:
+    answer = subprocess.run(
+        ["snakemake", "--unlock", *arguments], capture_output=True, text=True, check=False
+    )
+    if answer.returncode != 0:
+        sys.exit(f"pagd: the lock of Snakemake could not be taken away: {answer.stderr.strip()}")
+
+
+def _held(path: Path) -> bool:
+    """Whether the lock is ours: it stays so until this process, or Snakemake in it, is gone."""
+    path.parent.mkdir(exist_ok=True)
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    os.set_inheritable(descriptor, True)
+    return True
+
+
+def _others() -> list[int]:
+    """Processes of Snakemake in this folder that were started without this script."""
+    here, found = Path.cwd(), []
+    for process in psutil.process_iter(["cmdline", "cwd"]):
+        words = process.info["cmdline"] or []
+        named = any(Path(word).name == "snakemake" for word in words[:3])
+        if named and process.info["cwd"] == str(here) and process.pid != os.getpid():
+            found.append(process.pid)
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
