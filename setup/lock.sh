@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$(setup/find-python.sh)" -m venv "$scratch"
 "$scratch/bin/pip" install --quiet --upgrade pip
-"$scratch/bin/pip" install --quiet --editable '.[dev]'
+"$scratch/bin/pip" install --quiet --editable '.[cluster,dev]'
 {
     echo '# Every package of the environment, made by setup/lock.sh from pyproject.toml.'
     "$scratch/bin/pip" freeze --all --exclude pip --exclude pagd |

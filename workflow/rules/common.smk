@@ -89,8 +89,10 @@ if SCREENING:
 SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
 
 # A job that has taken more than it was allotted, or was killed from outside, is tried once more, with
-# twice as much. What fails by itself leaves a record, and is not tried again.
-RETRIES = 1
+# twice as much. What fails by itself leaves a record, and is not tried again. On a cluster it is for
+# the process that submits jobs to try again: within a job there is no more than was allotted.
+TRIES = 2
+RETRIES = TRIES - 1 if workflow.is_main_process else 0
 
 # The stages whose meaning is that of a screening too.
 SCREENING_STAGES = ("screening", "mesh", "solve", "metrics")
@@ -107,7 +109,7 @@ def growing(amount):
 
 def tries_left(wildcards, attempt):
     """How many tries may follow: at the last one, a limit exceeded is how the design ends."""
-    return max(0, RETRIES + 1 - attempt)
+    return max(0, TRIES - attempt)
 
 
 def of_generative_half(path):
