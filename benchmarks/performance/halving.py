@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import importlib
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from pagd.inventory import inventory
 from pagd.mesh.blocks import HEXAHEDRON_TETS, WEDGE_TETS, hexahedra, wedges
 from pagd.mesh.msh import read_msh, write_msh
 from pagd.mesh.quadratic import quadratic_mesh
 from pagd.mesh.types import IntArray, Mesh
+from pagd.record import RECORD_NAME, read_record, write_record
 
 __all__ = ["halve", "halved"]
 
@@ -31,8 +34,11 @@ _PARTS_OF_WEDGE = (
 
 
 def halve(file: Path) -> None:
-    """Replace a mesh in a file by that with every edge halved."""
+    """Replace a mesh in a file by that with every edge halved, and note it in its record."""
     write_msh(halved(read_msh(file)), file)
+    folder = file.parent
+    if (folder / RECORD_NAME).is_file():
+        write_record(replace(read_record(folder), files=inventory(folder)), folder)
 
 
 def halved(mesh: Mesh) -> Mesh:
