@@ -13,6 +13,7 @@ from pagd.cli.arguments import (
     add_config,
     add_folder,
     add_materials,
+    add_out,
     add_stage_options,
     add_verbose,
     override,
@@ -58,6 +59,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_figures(commands)
     _add_gathering(commands)
     _add_keeping(commands)
+    _add_archiving(commands)
     add_generative(commands)
     return parser
 
@@ -261,3 +263,26 @@ def _add_keeping(commands: Any) -> None:
         metavar="STATUS",
         help="treat designs that ended so as damaged: crashed, timed_out, …",
     )
+
+
+def _add_archiving(commands: Any) -> None:
+    archive = add_command(
+        commands, "archive", "archiving:archive", "public data set of what a run has left"
+    )
+    archive.add_argument("results", type=Path, metavar="FOLDER", help="folder of the run")
+    archive.add_argument(
+        "--more",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="DIR",
+        help="folders of designs that were simulated elsewhere",
+    )
+    archive.add_argument("--date", metavar="DATE", help="of publication (default: today)")
+    add_out(archive)
+    check = add_command(
+        commands, "check-archive", "archiving:check_archive", "whether a data set is sound"
+    )
+    check.add_argument("archive", type=Path, metavar="FOLDER", help="folder of the data set")
+    for command in (archive, check):
+        add_verbose(command)

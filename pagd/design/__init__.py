@@ -1,5 +1,6 @@
 """The design of a pneu-net: parameters, dependent ones, validity rules and exact volumes."""
 
+from pagd.design.identity import identity
 from pagd.design.model import MODES, CrossSection, Design, Mode
 from pagd.design.parameters import DECIMALS, PARAMETERS, Parameter
 from pagd.design.rules import Channel, GeometryRules, Limits, Violation, check, violations
@@ -21,6 +22,7 @@ __all__ = [
     "body_volume",
     "cavity_volume",
     "check",
+    "identity",
     "solid_volume",
     "violations",
 ]

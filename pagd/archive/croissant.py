@@ -1,0 +1,99 @@
+"""Metadata of the data set in the Croissant format: what files there are, and what is in them.
+
+Croissant 1.1 of MLCommons, by its own library, which also checks and loads what is written.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from datetime import date, datetime
+from typing import Final
+
+import mlcroissant as mlc
+
+from pagd import __version__
+from pagd.archive.card import DESCRIPTION, NAME
+from pagd.archive.splits import SPLITS
+from pagd.archive.tables import TABLES, Archived
+from pagd.tables import Column
+
+__all__ = ["CROISSANT", "croissant"]
+
+CROISSANT: Final = "croissant.json"
+
+_TYPES: Final = {
+    "string": mlc.DataType.TEXT,
+    "double": mlc.DataType.FLOAT,
+    "int32": mlc.DataType.INTEGER,
+    "int64": mlc.DataType.INTEGER,
+}
+_PARQUET: Final = "application/x-parquet"
+_LICENCE: Final = "https://spdx.org/licenses/MIT.html"
+_CREATOR: Final = "The pagd authors"
+_CITATION: Final = f"The pagd authors: {NAME}, made with pagd {__version__}."
+_KEYWORDS: Final = (
+    "soft robotics",
+    "soft pneumatic actuator",
+    "pneu-net",
+    "finite element method",
+    "generative design",
+)
+
+
+def croissant(digests: Mapping[str, str], published: date) -> str:
+    """Return the metadata as JSON text.
+
+    Parameters
+    ----------
+    digests
+        SHA-256 of the files of the tables, by path in the data set.
+    published
+        Date of publication.
+    """
+    files = [
+        mlc.FileObject(
+            id=path,
+            name=path,
+            content_url=path,
+            encoding_formats=[_PARQUET],
+            sha256=digest,
+        )
+        for path, digest in digests.items()
+    ]
+    sets = [_records(name, split, table) for name, table in TABLES.items() for split in SPLITS]
+    metadata = mlc.Metadata(
+        name=NAME,
+        description=DESCRIPTION,
+        version=__version__,
+        license=[_LICENCE],
+        creators=[mlc.Organization(name=_CREATOR)],
+        cite_as=_CITATION,
+        keywords=list(_KEYWORDS),
+        date_published=datetime(published.year, published.month, published.day),
+        distribution=files,
+        record_sets=sets,
+    )
+    text = json.dumps(metadata.to_json(), indent=2, ensure_ascii=False, default=str)
+    return text + "\n"
+
+
+def _records(name: str, split: str, table: Archived) -> mlc.RecordSet:
+    key = f"{name}/{split}"
+    return mlc.RecordSet(
+        id=key,
+        name=key,
+        description=f"A row is {table.row}: the part {split}.",
+        fields=[_field(key, f"data/{key}.parquet", column) for column in table.columns],
+    )
+
+
+def _field(record_set: str, path: str, column: Column) -> mlc.Field:
+    unit = f" ({column.unit})" if column.unit not in ("", "1") else ""
+    return mlc.Field(
+        id=f"{record_set}/{column.name}",
+        name=column.name,
+        description=f"{column.description}{unit}",
+        data_types=[_TYPES[column.type]],
+        source=mlc.Source(file_object=path, extract=mlc.Extract(column=column.name)),
+    )

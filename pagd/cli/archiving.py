@@ -1,0 +1,56 @@
+"""What the subcommands do that make a public data set of a run, and check one."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Sequence
+from datetime import date
+from typing import TYPE_CHECKING
+
+from pagd.errors import InputError
+
+if TYPE_CHECKING:
+    from pagd.archive.checks import Finding
+
+__all__ = ["archive", "check_archive"]
+
+
+def archive(options: Namespace) -> int:
+    """Write the data set that a run leaves; 1 if it breaks a rule."""
+    from pagd.archive.writing import write_archive
+
+    found = write_archive(options.results, options.out, options.more, _date(options.date))
+    return _told(found, f"{options.out} is written")
+
+
+def _date(text: str | None) -> date | None:
+    try:
+        return None if text is None else date.fromisoformat(text)
+    except ValueError:
+        raise InputError(f"--date = {text!r} must be a date such as 2026-01-31.") from None
+
+
+def check_archive(options: Namespace) -> int:
+    """Check a data set: its checksums, its metadata and its tables; 1 if anything is wrong."""
+    from pagd.archive.checks import check_tables
+    from pagd.archive.reading import read_tables
+    from pagd.archive.validating import faults_of_metadata
+    from pagd.archive.writing import differing
+
+    changed = differing(options.archive)
+    for name in changed:
+        print(f"{name} is missing, or not what its checksum says.")
+    faults = faults_of_metadata(options.archive)
+    for fault in faults:
+        print(f"croissant.json: {fault}")
+    code = _told(check_tables(read_tables(options.archive)), f"{options.archive} is read")
+    return 1 if changed or faults else code
+
+
+def _told(found: Sequence[Finding], done: str) -> int:
+    for one in found:
+        verdict = f"broken by {one.broken:,}, {one.first} the first" if one.broken else "kept"
+        print(f"{one.rule}: {verdict} (of {one.rows:,})")
+    broken = sum(1 for one in found if one.broken)
+    print(f"{done}: {len(found) - broken} of {len(found)} rules are kept.")
+    return 1 if broken else 0
