@@ -30,6 +30,11 @@ from pagd.tables import read_rows
 
 from .conftest import GENERATIVE, STRAIGHT, Project
 
+#: Fewer generated designs than elsewhere.
+FEWER = {
+    "generator": {"designs": 12, "largest_components": 3},
+    "diversity": GENERATIVE["diversity"] | {"hull_designs": 10},
+}
 PUBLISHED = date(2026, 1, 31)
 #: So few training designs are screened in the project.
 INCOMPLETE = "every training design has its result by a chamber"
@@ -39,7 +44,7 @@ INCOMPLETE = "every training design has its result by a chamber"
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> Project:
     """A run without pictures and without the comparison of generators."""
     project = Project(tmp_path_factory.mktemp("simulated"))
-    project.write(STRAIGHT, **GENERATIVE)
+    project.write(STRAIGHT, **GENERATIVE | FEWER)
     tables = ("screening/training", "screening/generated", "summary/performance.parquet")
     answer = project.snakemake("--", *(f"results/{table}" for table in tables))
     assert answer.returncode == 0, answer.stderr
@@ -65,7 +70,7 @@ def test_every_design_is_there_with_every_analysis(
     simulated: Project, frames: dict[str, pd.DataFrame]
 ) -> None:
     designs = frames["designs"].set_index("id")
-    assert designs["set"].value_counts().to_dict() == {"training": 300, "generated": 40, "other": 1}
+    assert designs["set"].value_counts().to_dict() == {"training": 300, "generated": 12, "other": 1}
     performance = frames["performance"]
     rows = read_rows(simulated / "summary/performance.parquet")
     full = performance[performance["fidelity"] == "full"].set_index("design_id")
@@ -75,7 +80,7 @@ def test_every_design_is_there_with_every_analysis(
     # A generated design that was simulated has both of its results under one id.
     both = performance.groupby("id")["fidelity"].agg(set)
     assert sum(found == {"cells", "full"} for found in both) == 3
-    assert (performance["fidelity"] == "cells").sum() == 40 + 10
+    assert (performance["fidelity"] == "cells").sum() == 12 + 10
 
 
 def test_ids_are_those_of_the_parameters_and_tell_the_split(
