@@ -56,13 +56,11 @@ def _counts(drills: list[Drill], designs: int) -> list[Count]:
         for number, drill in enumerate(drills):
             begun = time.monotonic()
             try:
-                sweep, before = drill.inflict(folder / str(number), designs)
+                found.append(count(drill, *drill.inflict(folder / str(number), designs), wanted))
             except (Needs, AssertionError) as why:
                 found.append(
                     Count(drill=drill, designs=designs, why=str(why), needs=isinstance(why, Needs))
                 )
-            else:
-                found.append(count(drill, sweep, before, wanted))
             print(f"{found[-1].line()} ({time.monotonic() - begun:.0f} s)", flush=True)
         return found
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from pathlib import Path
 from pagd.errors import InputError
 from pagd.files import is_abandoned
 from pagd.inventory import damages
-from pagd.record import RECORD_NAME, read_record
+from pagd.record import read_record
 
 __all__ = ["Finding", "abandoned", "discard", "findings", "wanted_again"]
 
@@ -57,14 +56,16 @@ def findings(results: Path, *, thorough: bool) -> Iterator[Finding]:
 
 
 def wanted_again(results: Path, statuses: Collection[str]) -> Iterator[Finding]:
-    """Yield the folders of the first stage of every design that ended with one of the statuses."""
+    """Yield the folder of the first stage of every design that ended with one of the statuses."""
+    told = set()
     for folder in _stage_folders(results):
         try:
-            content = json.loads((folder / RECORD_NAME).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            record = read_record(folder)
+        except InputError:  # a finding of its own
             continue
-        if content["status"] in statuses:
-            yield Finding(folder, f"{content['status']}: {content['reason']}")
+        if record.status in statuses and folder.parent not in told:
+            told.add(folder.parent)
+            yield Finding(folder, f"{record.status}: {record.reason}")
 
 
 def abandoned(results: Path) -> list[Path]:

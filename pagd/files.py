@@ -98,6 +98,7 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_abandoned(path)
     temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=_own(path)))
+    older: Path | None = None
     try:
         with _place_to_work(temporary) as work:
             yield work
@@ -106,12 +107,15 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
         temporary.chmod(0o777 & ~_umask())
         for one in (*temporary.rglob("*"), temporary):
             _flush(one)
+        # An older one is put aside first, so that none is ever seen half removed.
         if path.exists():
-            shutil.rmtree(path)
+            path.rename(older := Path(tempfile.mkdtemp(dir=path.parent, prefix=_own(path))))
         temporary.rename(path)
         _flush(path.parent)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+        if older is not None:
+            shutil.rmtree(older, ignore_errors=True)
 
 
 def _flush(path: Path) -> None:
@@ -136,6 +140,8 @@ def _place_to_work(temporary: Path) -> Iterator[Path]:
     if not scratch:
         yield temporary
         return
+    if not Path(scratch).is_dir():
+        raise InputError(f"{SCRATCH} = {scratch}: must be a folder, but there is none.")
     with tempfile.TemporaryDirectory(dir=scratch, prefix="pagd-") as name:
         yield Path(name)
 

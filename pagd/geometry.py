@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.design import Design, GeometryRules, check
-from pagd.errors import InputError, StageFailure, Status
+from pagd.errors import InputError, MachineError, StageFailure, Status
 from pagd.files import replaced_file, write_text
+from pagd.limits import die_with_parent
 
 __all__ = ["Part", "openscad_version", "render", "write_design_scad"]
 
@@ -122,6 +123,9 @@ def _openscad() -> str:
     return program
 
 
+_WRITE_ERROR = "write error"
+
+
 def _run(command: list[str], time_limit: float, what: str) -> None:
     """Run OpenSCAD; its process group does not outlive this call, whatever happens."""
     with subprocess.Popen(
@@ -132,6 +136,7 @@ def _run(command: list[str], time_limit: float, what: str) -> None:
         text=True,
         errors="replace",
         start_new_session=True,
+        preexec_fn=die_with_parent,
     ) as process:
         try:
             _, messages = process.communicate(timeout=time_limit)
@@ -140,6 +145,11 @@ def _run(command: list[str], time_limit: float, what: str) -> None:
             raise StageFailure(Status.invalid_geometry, reason) from None
         finally:
             _end_group(process)
+    # OpenSCAD ends well when the disk is full, and says no more than this.
+    if _WRITE_ERROR in messages.lower():
+        raise MachineError(f"OpenSCAD could not write {what}: {_last_lines(messages)}.")
+    if -process.returncode == signal.SIGKILL:
+        raise MachineError(f"OpenSCAD was killed from outside while it made {what}.")
     if process.returncode in _CANNOT_RUN:
         raise InputError(f"The program openscad does not start: {_last_lines(messages)}.")
     if process.returncode != 0:

@@ -7,9 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from pagd.errors import InputError
+from pagd.limits import in_force
 from pagd.record import RECORD_NAME, Record, read_record
 
 __all__ = ["damages", "inventory", "read_sound_record"]
+
+
+_OF_DAMAGED = "record-of-damaged-files.json"
 
 
 def inventory(folder: Path) -> dict[str, dict[str, str | int]]:
@@ -53,10 +57,13 @@ def read_sound_record(folder: Path) -> Record:
     Raises
     ------
     InputError
-        If there is no record, or the files are not those that it tells of.
+        If there is no record, or the files are not those that it tells of. In a workflow, the
+        record is renamed then, so that the next run finds the folder damaged and makes it again.
     """
     record = read_record(folder)
     for damage in damages(folder, record, thorough=True):
+        if in_force() is not None:
+            (folder / RECORD_NAME).rename(folder / _OF_DAMAGED)
         raise InputError(
             f"{damage} Remove {folder}, or have it found and removed by: pagd audit --discard."
         )

@@ -20,7 +20,7 @@ import psutil
 
 from pagd.errors import MachineError, PagdError, StageFailure, Status
 
-__all__ = ["Limits", "in_force", "run_apart", "under"]
+__all__ = ["Limits", "die_with_parent", "in_force", "run_apart", "under"]
 
 Result = TypeVar("Result")
 
@@ -76,7 +76,7 @@ def run_apart(function: Callable[[], Result], limits: Limits) -> Result:
     ------
     StageFailure
         ``timed_out`` or ``out_of_memory``; ``crashed`` where a signal ended it, or it raised what
-        is neither a ``PagdError`` nor a fault of the machine (``OSError``, ``MemoryError``).
+        is neither a ``PagdError`` nor a fault of the machine (``OSError``).
     MachineError
         If it was killed from outside, or exceeded limits that are not final.
     """
@@ -87,8 +87,13 @@ def run_apart(function: Callable[[], Result], limits: Limits) -> Result:
     parent = os.getpid()
     process = os.fork()
     if process == 0:
-        os.close(reading)
-        os._exit(_work(function, writing, parent))
+        code = os.EX_SOFTWARE
+        try:
+            os.close(reading)
+            code = _work(function, writing, parent)
+        finally:
+            # Whatever is raised here must not run on in what is the parent's work.
+            os._exit(code)
     os.close(writing)
     try:
         answer = _awaited(process, reading, limits)
@@ -96,7 +101,10 @@ def run_apart(function: Callable[[], Result], limits: Limits) -> Result:
         os.close(reading)
         _kill(process)
         _, status = os.waitpid(process, 0)
-    result: Result = _outcome(answer, os.waitstatus_to_exitcode(status))
+    try:
+        result: Result = _outcome(answer, os.waitstatus_to_exitcode(status))
+    except MemoryError:
+        raise _exceeded(limits, Status.out_of_memory, "It was refused more memory.") from None
     return result
 
 
@@ -110,22 +118,27 @@ def _work(function: Callable[[], object], writing: int, parent: int) -> int:
     except KeyboardInterrupt:
         return 130
     except BaseException as error:
-        traceback.print_exc()
+        with contextlib.suppress(OSError):
+            traceback.print_exc()
         told = f"A fault: {type(error).__name__}: {error}."
         answer = pickle.dumps((False, StageFailure(Status.crashed, told)))
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError):
+            stream.flush()
     with os.fdopen(writing, "wb") as file:
         # Its length first: it may be killed while it writes.
         file.write(len(answer).to_bytes(_LENGTH) + answer)
     return 0
 
 
-def _die_with(parent: int) -> None:
+def die_with_parent() -> None:
     """Have the kernel kill this process when its parent is killed; Linux alone can."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _die_with(parent: int) -> None:
+    die_with_parent()
     if os.getppid() != parent:  # gone before that
         os._exit(1)
 
@@ -140,12 +153,17 @@ def _awaited(process: int, reading: int, limits: Limits) -> bytes:
             raise _exceeded(limits, Status.timed_out, f"It took more than {limits.time_s:g} s.")
         if select.select([reading], [], [], min(left, _LOOK_S))[0]:
             part = os.read(reading, 1 << 20)
-            if not part:
-                return b"".join(parts)
             parts.append(part)
+            # Not only its end: what the work has started may hold the pipe for longer.
+            if not part or _is_whole(b"".join(parts)):
+                return b"".join(parts)
         elif _memory_MB(process) > limits.memory_MB:
             told = f"It took more than {limits.memory_MB:g} MB of memory."
             raise _exceeded(limits, Status.out_of_memory, told)
+
+
+def _is_whole(answer: bytes) -> bool:
+    return len(answer) >= _LENGTH and len(answer) == _LENGTH + int.from_bytes(answer[:_LENGTH])
 
 
 def _exceeded(limits: Limits, status: Status, told: str) -> PagdError:
@@ -177,8 +195,7 @@ def _kill(process: int) -> None:
 
 
 def _outcome(answer: bytes, code: int) -> Any:
-    length = int.from_bytes(answer[:_LENGTH])
-    if not answer or len(answer) != _LENGTH + length:
+    if not _is_whole(answer):
         raise _end_without_a_word(code)
     done, value = pickle.loads(answer[_LENGTH:])
     if done:

@@ -120,12 +120,15 @@ def _ended(path: Path) -> Ended | None:
     content = _read(path)
     if content is None:
         return None
-    return Ended(
-        design_id=content["design_id"],
-        status=content["status"],
-        reason=content["reason"],
-        seconds=content["figures"].get("wall_s", 0.0) + content["timings_s"]["wall"],
-    )
+    try:
+        return Ended(
+            design_id=content["design_id"],
+            status=content["status"],
+            reason=content["reason"],
+            seconds=content["figures"].get("wall_s", 0.0) + content["timings_s"]["wall"],
+        )
+    except (KeyError, TypeError, AttributeError):  # a damaged one
+        return None
 
 
 def _read(path: Path) -> Mapping[str, Any] | None:
@@ -158,7 +161,8 @@ def _without_result(results: Path, names: Sequence[str]) -> dict[str, str]:
     """The last line of the log of the first stage that is not done, of designs that were begun."""
     found = {}
     for name in names:
-        stage = next(s for s in _STAGES if not (results / "designs" / name / s).is_dir())
+        folder = results / "designs" / name
+        stage = next((s for s in _STAGES if not (folder / s).is_dir()), _STAGES[-1])
         line = _last_line(results / "logs" / stage / f"{name}.log")
         if line is not None:
             found[name] = f"{stage}: {line or 'cut off'}"

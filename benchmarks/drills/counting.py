@@ -79,6 +79,7 @@ def count(
         if names.count(name) == 1 and _is_right(drill, name, found.get(name), wanted[name])
     ]
     told = sweep.pagd("audit")
+    assert told.returncode in (0, 1), told.stderr
     return Count(
         drill=drill,
         designs=sweep.designs,
@@ -104,7 +105,7 @@ def text_of(counts: Sequence[Count]) -> str:
     """Return the table of the drills in Markdown, and what the faults are."""
     headings = ("fault", "correct records", "done before", "of them again", "damaged", "half")
     rows = [
-        [each.drill.name, "left out", "", "", "", ""]
+        [each.drill.name, "left out" if each.needs else "FAILED", "", "", "", ""]
         if each.why
         else [
             each.drill.name,
@@ -117,5 +118,9 @@ def text_of(counts: Sequence[Count]) -> str:
         for each in counts
     ]
     notes = [wrapped(f"- {c.drill.name}: {c.drill.what}", "  ") for c in counts]
-    left = [wrapped(f"Left out: {c.drill.name}, which needs {c.why}.") for c in counts if c.needs]
+    left = [
+        wrapped(f"{'Left out: it needs' if c.needs else 'FAILED:'} {c.why} ({c.drill.name})")
+        for c in counts
+        if c.why
+    ]
     return "\n\n".join([table(headings, rows), "\n".join(notes), *left])

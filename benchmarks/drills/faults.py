@@ -43,11 +43,19 @@ class Drill:
 def _job_killed(folder: Path, designs: int) -> tuple[Sweep, dict[str, float]]:
     sweep = Sweep(folder, designs)
     with sweep.start() as run:
-        wait_for(lambda: len(sweep.done()) > 0 and _writers(sweep, "solve"))
+        wait_for(lambda: len(sweep.done()) > 0 and _kill_one(sweep, "solve"))
         before = sweep.done()
-        os.kill(_writers(sweep, "solve")[0], signal.SIGKILL)
         run.wait()
     return sweep, before
+
+
+def _kill_one(sweep: Sweep, stage: str) -> bool:
+    """Kill a process that makes a stage; whether there was one."""
+    for process in _writers(sweep, stage):
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
+            return True
+    return False
 
 
 def _writers(sweep: Sweep, stage: str) -> list[int]:

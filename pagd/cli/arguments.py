@@ -94,8 +94,9 @@ def _add_limits(command: argparse.ArgumentParser) -> None:
         nargs=3,
         type=float,
         metavar=("MIN", "MB", "TRIES"),
-        help="minutes and memory of the job, of which the stage may take nine tenths; beyond them "
-        "the design has failed or, if tries with more are to follow, the exit code is 75",
+        help="minutes and memory of the job, of which the stage may take nine tenths and all but "
+        "500 MB; beyond them the design has failed or, if tries with more are to follow, the exit "
+        "code is 75",
     )
 
 

@@ -99,7 +99,9 @@ def audit(options: Namespace) -> int:
 
     results: Path = options.results
     again = {Status(name).value for name in options.again}
-    found = [*findings(results, thorough=not options.quick), *wanted_again(results, again)]
+    found = list(findings(results, thorough=not options.quick))
+    if again:
+        found += wanted_again(results, again)
     for finding in found:
         print(f"{finding.folder}: {finding.why}")
     left = abandoned(results)

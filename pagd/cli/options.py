@@ -11,8 +11,10 @@ from pagd.limits import Limits
 
 __all__ = ["checked_threads", "config_of", "limits_of"]
 
-# Of what a job has been allotted, what is around the stage takes the rest.
-_SHARE = 0.9
+# Of what a job has been allotted, what is around the stage takes the rest: pagd itself, and on a
+# cluster Snakemake twice.
+_SHARE_OF_TIME = 0.9
+_AROUND_MB = 500.0
 
 
 def config_of(options: Namespace) -> dict[str, Any]:
@@ -47,4 +49,8 @@ def limits_of(options: Namespace) -> Limits | None:
             f"--allotted = {minutes:g} {memory:g} {tries:g} must be minutes and megabytes greater "
             "than 0, and a number of tries of at least 0."
         )
-    return Limits(time_s=60 * _SHARE * minutes, memory_MB=_SHARE * memory, final=tries == 0)
+    return Limits(
+        time_s=60 * _SHARE_OF_TIME * minutes,
+        memory_MB=max(memory - _AROUND_MB, _AROUND_MB),
+        final=tries == 0,
+    )

@@ -125,7 +125,11 @@ class _Server:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         process = os.fork()
         if process == 0:
-            os._exit(self._work(connection, request))
+            code = _FAULT
+            try:
+                code = self._work(connection, request)
+            finally:  # nothing may run on as a second server
+                os._exit(code)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         for stream in request.streams:
             os.close(stream)

@@ -13,7 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from pagd.errors import InputError, PagdError, StageFailure, Status
+from pagd.errors import InputError, MachineError, PagdError, StageFailure, Status
+from pagd.limits import die_with_parent
 from pagd.mesh import worker
 from pagd.mesh.checks import check_actuator
 from pagd.mesh.interface import MESHERS, STRUCTURED, mesher_named
@@ -97,6 +98,8 @@ def mesh_with_limits(
         If a setting is unusable.
     StageFailure
         ``mesh_failed`` if no mesher succeeds, with every mesher's reason.
+    MachineError
+        If a mesher was killed from outside.
     """
     _check_settings(mesher_names, size, time_limit_s)
     volume = surfaces.volume() if exact_volume is None else exact_volume
@@ -109,6 +112,8 @@ def mesh_with_limits(
             else:
                 mesh = _run_apart(name, surfaces, size, time_limit_s)
             quality = _accepted(mesh, volume, gate or MeshGate())
+        except MachineError:
+            raise
         except PagdError as error:
             seconds = time.perf_counter() - start
             attempts.append(Attempt(mesher=name, seconds=seconds, reason=str(error)))
@@ -177,6 +182,7 @@ def _run_limited(folder: Path, time_limit_s: float) -> None:
             stdout=subprocess.DEVNULL,
             stderr=messages,
             start_new_session=True,
+            preexec_fn=die_with_parent,
         ) as process,
     ):
         try:
@@ -187,6 +193,8 @@ def _run_limited(folder: Path, time_limit_s: float) -> None:
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
+    if -code == signal.SIGKILL:
+        raise MachineError("The mesher was killed from outside, as for lack of memory.")
     if code != 0:
         text = (folder / "messages.txt").read_text(encoding="utf-8", errors="replace")
         raise StageFailure(Status.mesh_failed, _cause_of_death(code, text))

@@ -24,7 +24,7 @@ import numpy as np
 from pagd import __version__
 from pagd.catalogue import NamedDesign
 from pagd.config import part, refusal_of_cells
-from pagd.errors import InputError, StageFailure, Status
+from pagd.errors import InputError, MachineError, StageFailure, Status
 from pagd.files import replaced_folder, write_text
 from pagd.inventory import read_sound_record
 from pagd.limits import Limits, run_apart
@@ -52,9 +52,9 @@ TABLES: dict[str, tuple[Column, ...]] = {
 
 # Designs of a batch: some ten seconds of work are what an end without warning costs.
 _BATCH = 10
-# Far more than any design has taken, in full too: what hangs or swells is to be told from the rest.
-_LONGEST_S = 900.0
-_LARGEST_MB = 6000.0
+# Seconds a design, and megabytes of all: far more than any takes, to tell what hangs or swells.
+_LONGEST_S = {CELLS: 120.0, PIECES: 240.0, GATED: 1800.0}
+_LARGEST_MB = {CELLS: 1800.0, PIECES: 1800.0, GATED: 6000.0}
 _KEY_NAME = "key.json"
 # Part of the meaning of parts, not a draw of the science.
 _SEED_OF_PARTS = 0
@@ -324,20 +324,21 @@ def _analysed(
     if threads_are_started():  # in a process that has had other work: it cannot be forked
         return all_of(designs)
     try:
-        return run_apart(lambda: all_of(designs), _of_so_many(len(designs)))
-    except StageFailure as failure:
+        return run_apart(lambda: all_of(designs), _of_so_many(len(designs), how[2]))
+    except (StageFailure, MachineError) as failure:
         if len(designs) == 1:
             return [_ended(designs[0], how[2], failure)]
     return [result for named in designs for result in _analysed([named], how)]
 
 
-def _of_so_many(designs: int) -> Limits:
-    return Limits(time_s=_LONGEST_S * designs, memory_MB=_LARGEST_MB)
+def _of_so_many(designs: int, fidelity: str) -> Limits:
+    return Limits(time_s=_LONGEST_S[fidelity] * designs, memory_MB=_LARGEST_MB[fidelity])
 
 
-def _ended(named: NamedDesign, fidelity: str, failure: StageFailure) -> Reduced:
-    """The row of a design whose process has crashed, or was ended."""
-    return Reduced(_row_of(named, fidelity, failure.status, failure.reason), {}, {}, {})
+def _ended(named: NamedDesign, fidelity: str, failure: StageFailure | MachineError) -> Reduced:
+    """The row of a design whose process has crashed, or was ended: twice, once by itself."""
+    status = failure.status if isinstance(failure, StageFailure) else Status.crashed
+    return Reduced(_row_of(named, fidelity, status, str(failure)), {}, {}, {})
 
 
 def _safely(

@@ -15,6 +15,7 @@ from pagd.audit import discard, findings, wanted_again
 from pagd.cli import main
 from pagd.errors import InputError, Status
 from pagd.inventory import read_sound_record
+from pagd.limits import Limits, under
 from pagd.progress import progress_of
 from pagd.record import Meter, read_record
 from pagd.stages.stage import Outcome, run_stage
@@ -125,6 +126,24 @@ def test_a_stage_refuses_damaged_files_of_another(results: Path) -> None:
     flip_a_bit(folder / "made.bin")
     with pytest.raises(InputError, match=r"made\.bin is not what it was made as.*pagd audit"):
         read_sound_record(folder)
+
+
+def test_in_a_workflow_damage_is_found_again_by_the_next_run(results: Path) -> None:
+    folder = results / "designs/a/mesh"
+    flip_a_bit(folder / "made.bin")
+    assert list(findings(results, thorough=False)) == []
+    with under(Limits(time_s=60, memory_MB=4000)), pytest.raises(InputError):
+        read_sound_record(folder)
+    assert main(["audit", str(results), "--quick", "--discard"]) == 0
+    assert list((results / "designs/a").iterdir()) == []
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", "null", '{"status": "ok"}'])
+def test_any_record_is_told_of(results: Path, text: str) -> None:
+    (results / "designs/a/metrics/record.json").write_text(text)
+    assert [f.folder.parent.name for f in findings(results, thorough=False)] == ["a"]
+    assert main(["audit", str(results), "--again", "crashed"]) == 1
+    assert progress_of(results, ["a", "bb"]).done == 1
 
 
 def test_a_look_at_a_run_under_way(results: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import faulthandler
 import os
 import signal
@@ -19,6 +20,17 @@ from pagd.record import Meter, read_record
 from pagd.stages.stage import Outcome, run_stage
 
 ENOUGH = Limits(time_s=60, memory_MB=4000)
+
+
+def assert_gone(process: int) -> None:
+    """Wait until a process has ended; one that nobody has asked after has, too."""
+    deadline = time.monotonic() + 10
+    while psutil.pid_exists(process):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if psutil.Process(process).status() == psutil.STATUS_ZOMBIE:
+                return
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
 
 
 def failure_of(work: object, limits: Limits = ENOUGH) -> StageFailure:
@@ -52,10 +64,7 @@ def test_what_takes_too_long_is_ended_with_all_it_has_started(tmp_path: Path) ->
     assert (failure.status, str(failure)) == (Status.timed_out, "It took more than 2 s.")
     assert time.monotonic() - begun < 30
     child = int(note.read_text())
-    deadline = time.monotonic() + 10
-    while psutil.pid_exists(child) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not psutil.pid_exists(child)
+    assert_gone(child)
 
 
 def test_what_takes_too_much_memory_is_ended() -> None:
@@ -105,10 +114,36 @@ run_apart(work, Limits(time_s=600, memory_MB=4000))
             time.sleep(0.05)
         process.kill()
     worker = int(note.read_text())
-    deadline = time.monotonic() + 10
-    while psutil.pid_exists(worker) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not psutil.pid_exists(worker)
+    assert_gone(worker)
+
+
+def test_memory_that_is_refused_is_memory_that_is_lacking() -> None:
+    def swell() -> None:
+        raise MemoryError
+
+    assert failure_of(swell).status is Status.out_of_memory
+    with pytest.raises(MachineError):
+        run_apart(swell, Limits(time_s=60, memory_MB=4000, final=False))
+
+
+def test_a_fork_that_cannot_tell_does_not_run_on(tmp_path: Path) -> None:
+    """Its output has no room, and what it raises then must not unwind what is the parent's."""
+    script = f"""
+import sys
+from pathlib import Path
+from pagd.limits import Limits, run_apart
+def work():
+    print("x" * 100_000)
+    raise RuntimeError
+try:
+    run_apart(work, Limits(time_s=60, memory_MB=4000))
+finally:
+    with Path({str(tmp_path / "ran")!r}).open("a") as file:
+        file.write("once ")
+"""
+    with Path("/dev/full").open("w") as full:
+        subprocess.run([sys.executable, "-c", script], stdout=full, stderr=full, check=False)
+    assert (tmp_path / "ran").read_text() == "once "
 
 
 def test_limits_are_in_force_within_the_block_only() -> None:

@@ -48,6 +48,11 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """
 
 
+def is_of_others() -> bool:
+    """Whether this machine knows a cluster already, which is not of a test that was killed."""
+    return PLACE.exists() and not PLACE.is_symlink()
+
+
 @dataclass
 class Slurm:
     """A cluster of one node, which must be the only one that this machine knows."""

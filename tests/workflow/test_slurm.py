@@ -14,7 +14,7 @@ import pytest
 from pagd.tables import read_rows
 
 from .conftest import ROOT, Project
-from .slurm import PLACE, PROGRAMS, Slurm
+from .slurm import PLACE, PROGRAMS, Slurm, is_of_others
 
 MISSING = [program for program in PROGRAMS if shutil.which(program) is None]
 
@@ -22,7 +22,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(bool(MISSING), reason=f"Slurm is not installed: {', '.join(MISSING)}"),
     pytest.mark.skipif(os.geteuid() != 0, reason="Slurm starts jobs as root only"),
-    pytest.mark.skipif(PLACE.exists(), reason=f"{PLACE} is that of another cluster"),
+    pytest.mark.skipif(is_of_others(), reason=f"{PLACE} is that of another cluster"),
 ]
 
 ROWS = [
@@ -50,12 +50,17 @@ def test_a_sweep_of_a_dozen_designs_survives_a_kill(slurm: Slurm, project: Proje
     command += ["--profile", str(ROOT / "profiles" / "slurm"), "--latency-wait", "5"]
     # This cluster keeps no accounts: what becomes of jobs is to be asked of the queue.
     command += ["--slurm-status-command", "squeue"]
+    # Fewer at a time than are ready, as in any large sweep; and no more memory than a laptop has.
+    command += ["--jobs", "8", "--set-resources", "solve:mem_mb=1500", "prepare:mem_mb=1500"]
     command += ["--slurm-init-seconds-before-status-checks", "2", "--", "summary"]
     output = project.folder / "output"
     with output.open("w") as file:
         run = subprocess.Popen(command, cwd=project.folder, stdout=file, stderr=file)
-    killed = kill_a_solve(slurm, run)
-    assert run.wait(timeout=600) == 0, output.read_text()[-3000:]
+    try:
+        killed = kill_a_solve(slurm, run)
+        assert run.wait(timeout=600) == 0, output.read_text()[-3000:]
+    finally:
+        run.kill()
 
     rows = read_rows(project / "summary/performance.parquet")
     assert {row["design_id"]: row["status"] for row in rows} == {
@@ -64,7 +69,6 @@ def test_a_sweep_of_a_dozen_designs_survives_a_kill(slurm: Slurm, project: Proje
     told = output.read_text()
     assert f"external_jobid: {killed}" in told, "the killed job was not noticed"
     assert "Trying to restart job" in told
-    assert "Submitted array job" in told
 
 
 def kill_a_solve(slurm: Slurm, run: subprocess.Popen[bytes]) -> str:

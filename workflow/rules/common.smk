@@ -3,6 +3,7 @@
 import functools
 import gc
 import json
+import os
 import sys
 from pathlib import Path
 from shlex import quote
@@ -88,9 +89,9 @@ if SCREENING:
 
 SCREENED_PICTURES = ("screened", "screened_novelty", "screened_beside_full")
 
-# A job that has taken more than it was allotted, or was killed from outside, is tried once more, with
-# twice as much. What fails by itself leaves a record, and is not tried again. On a cluster it is for
-# the process that submits jobs to try again: within a job there is no more than was allotted.
+# A job that has taken more than it was allotted, or was killed from outside, is tried once more,
+# with twice as much. What fails by itself leaves a record, and is not tried again. On a cluster it
+# is for the process that submits jobs to try again: within a job there is no more than allotted.
 TRIES = 2
 RETRIES = TRIES - 1 if workflow.is_main_process else 0
 
@@ -232,6 +233,9 @@ def sum_up_what_is_there():
     summary, metrics = Path("results/summary"), [folder / "metrics" for folder in there]
     write_summary(metrics, summary / "performance.parquet", summary / "summary.csv", novelty)
     write_gathered(metrics, summary)
+    # Older than all they are made of: the next run makes them again, of whatever there is then.
+    for table in summary.iterdir():
+        os.utime(table, (0, 0))
     print(f"{len(there)} of {len(names)} designs are done: results/summary has those.", flush=True)
 
 

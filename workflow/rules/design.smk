@@ -36,14 +36,14 @@ rule prepare:
         "Draw, check and mesh design {wildcards.design}."
     shell:
         "pagd geometry --design {params.design:q} --config {params.geometry:q}"
-        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
+        " --allotted $(({resources.runtime} / 3)) {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.geometry:q} > {log.geometry:q} 2>&1\n"
         "pagd repair --geometry {output.geometry:q} --config {params.repair:q}"
-        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
+        " --allotted $(({resources.runtime} / 3)) {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.repair:q} > {log.repair:q} 2>&1\n"
         "pagd mesh --geometry {output.geometry:q} --repair {output.repair:q}"
         " --config {params.mesh:q}"
-        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
+        " --allotted $(({resources.runtime} / 3)) {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.mesh:q} > {log.mesh:q} 2>&1"
 
 
@@ -92,7 +92,7 @@ rule metrics:
         "results/benchmarks/metrics/{design}.tsv"
     retries: RETRIES
     resources:
-        mem_mb=growing(1000),
+        mem_mb=growing(1500),
         runtime=growing(10),
         tries_left=tries_left,
         tmpdir=None,

@@ -23,7 +23,7 @@ rule screen_part:
     benchmark:
         "results/benchmarks/screening/{screened}_{part}.tsv"
     resources:
-        mem_mb=1000,
+        mem_mb=2000,
         runtime=60,
     params:
         version=[STAGE_VERSIONS[stage] for stage in SCREENING_STAGES],

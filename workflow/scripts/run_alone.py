@@ -19,6 +19,8 @@ from pathlib import Path
 import psutil
 
 LOCK = Path(".snakemake") / "run.lock"
+# Subcommands of pagd that change nothing.
+_ONLY_LOOK = {"status", "--help", "--version"}
 LOCKS_OF_SNAKEMAKE = Path(".snakemake") / "locks"
 
 
@@ -31,8 +33,13 @@ def main(arguments: list[str]) -> int:
         print("pagd: a run was cut off here; going on where it was.", file=sys.stderr)
         _unlock(arguments)
     if Path("results").is_dir():
-        subprocess.run(["pagd", "audit", "results", "--quick", "--discard"], check=True)
-    os.execvp("snakemake", ["snakemake", *arguments])
+        audit = subprocess.run(["pagd", "audit", "results", "--quick", "--discard"], check=False)
+        if audit.returncode != 0:
+            print("pagd: the audit of results/ has failed, see above.", file=sys.stderr)
+            return audit.returncode
+    # Jobs side by side must not ask for more memory than the machine has.
+    memory = f"mem_mb={psutil.virtual_memory().total // 2**20}"
+    os.execvp("snakemake", ["snakemake", "--resources", memory, *arguments])
 
 
 def _unlock(arguments: list[str]) -> None:
@@ -56,11 +63,12 @@ def _held(path: Path) -> bool:
 
 
 def _others() -> list[int]:
-    """Processes of Snakemake in this folder that were started without this script."""
+    """Snakemake in this folder, started without this script, or work that a killed one has left."""
     here, found = Path.cwd(), []
     for process in psutil.process_iter(["cmdline", "cwd"]):
         words = process.info["cmdline"] or []
-        named = any(Path(word).name == "snakemake" for word in words[:3])
+        first = [Path(word).name for word in words[:4]]
+        named = "snakemake" in first or ("pagd" in first and not _ONLY_LOOK & set(first))
         if named and process.info["cwd"] == str(here) and process.pid != os.getpid():
             found.append(process.pid)
     return found
