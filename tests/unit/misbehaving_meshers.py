@@ -34,6 +34,16 @@ class Crashing:
         raise AssertionError("it was to crash")
 
 
+class Killed:
+    """As the kernel does it where memory is short."""
+
+    name = "killed"
+
+    def __call__(self, surfaces: SurfacePair, size: float) -> Mesh:
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("it was to be killed")
+
+
 class Raising:
     name = "raising"
 

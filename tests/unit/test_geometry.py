@@ -19,7 +19,7 @@ from pagd.design import (
     cavity_volume,
     violations,
 )
-from pagd.errors import InputError, StageFailure, Status
+from pagd.errors import InputError, MachineError, StageFailure, Status
 from pagd.geometry import Part, openscad_version, render, write_design_scad
 from pagd.repair import repair
 
@@ -244,6 +244,23 @@ def test_openscad_that_does_not_start_is_not_blamed_on_the_design(
     fake_openscad(tmp_path, "echo 'libGL.so.1: cannot open' >&2; exit 127", monkeypatch)
     with pytest.raises(InputError, match="does not start: libGL"):
         render(MIXED, RULES, "body", tmp_path / "body.stl")
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        # This is all that OpenSCAD says, and it ends well.
+        ("echo 'ERROR: \"body.stl\" write error. (Disk full?)' >&2", "could not write the body"),
+        ("kill -9 $$", "killed from outside"),
+    ],
+)
+def test_a_fault_of_the_machine_is_not_blamed_on_the_design(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str, words: str
+) -> None:
+    fake_openscad(tmp_path, script, monkeypatch)
+    with pytest.raises(MachineError, match=words):
+        render(MIXED, RULES, "body", tmp_path / "body.stl")
+    assert not list(tmp_path.glob("*.stl"))
 
 
 def test_a_hung_openscad_and_its_children_are_ended(

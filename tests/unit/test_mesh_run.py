@@ -8,7 +8,7 @@ import pytest
 from mesh_samples import BLOCK_VOLUME, block_pair, box_surface
 from misbehaving_meshers import CHILD_FILE
 
-from pagd.errors import InputError, StageFailure, Status
+from pagd.errors import InputError, MachineError, StageFailure, Status
 from pagd.mesh.run import MeshGate, MeshingResult, mesh_with_limits
 
 PAIR = block_pair()
@@ -46,6 +46,11 @@ def test_second_mesher_steps_in_where_the_first_breaks(name: str, reason: str) -
     result = meshed(name, "gmsh")
     assert result.mesher == "gmsh"
     assert [attempt.reason for attempt in result.attempts] == [reason, None]
+
+
+def test_a_mesher_that_is_killed_from_outside_is_no_fault_of_the_design() -> None:
+    with pytest.raises(MachineError, match="killed from outside"):
+        meshed("misbehaving_meshers:Killed", "gmsh")
 
 
 def test_mesh_of_something_else_counts_as_failure() -> None:

@@ -264,6 +264,11 @@ def test_a_crash_is_not_hidden_and_leaves_nothing(project: Project) -> None:
     rows = read_rows(project / "summary/performance.parquet")
     assert [(row["design_id"], row["status"]) for row in rows] == [("thin", "invalid_geometry")]
 
+    # Those tables count as older than any design: without the one that failed, they are made again.
+    project.write(THIN)
+    answer = project.snakemake("--dry-run", "--", "summary")
+    assert re.search(r"^summary_tables +1$", said(answer), re.MULTILINE), said(answer)
+
 
 @pytest.mark.parametrize(
     ("fault", "sentence"),
