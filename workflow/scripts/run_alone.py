@@ -67,11 +67,18 @@ def _others() -> list[int]:
     here, found = Path.cwd(), []
     for process in psutil.process_iter(["cmdline", "cwd"]):
         words = process.info["cmdline"] or []
-        first = [Path(word).name for word in words[:4]]
-        named = "snakemake" in first or ("pagd" in first and not _ONLY_LOOK & set(first))
-        if named and process.info["cwd"] == str(here) and process.pid != os.getpid():
+        if process.info["cwd"] == str(here) and process.pid != os.getpid() and _is_at_work(words):
             found.append(process.pid)
     return found
+
+
+def _is_at_work(words: list[str]) -> bool:
+    """Whether a command line is that of a program, or a module, that changes results."""
+    programs = [Path(word).name for word in words[:2] if Path(word).is_file()]
+    if "-m" in words[1:3]:
+        place = words.index("-m") + 1
+        programs += words[place : place + 1]
+    return "snakemake" in programs or ("pagd" in programs and not _ONLY_LOOK & set(words))
 
 
 if __name__ == "__main__":
