@@ -68,7 +68,7 @@ def _writers(sweep: Sweep, stage: str) -> list[int]:
 def _run_killed(folder: Path, designs: int) -> tuple[Sweep, dict[str, float]]:
     sweep = Sweep(folder, designs)
     with sweep.start() as run:
-        wait_for(lambda: len(sweep.done()) >= designs // 3)
+        wait_for(lambda: len(sweep.noted()) >= designs // 3)
         os.killpg(run.pid, signal.SIGKILL)
     before = sweep.noted()
     sweep.go_on()
