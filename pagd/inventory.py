@@ -10,7 +10,7 @@ from pagd.errors import InputError
 from pagd.limits import in_force
 from pagd.record import RECORD_NAME, Record, read_record
 
-__all__ = ["damages", "inventory", "read_sound_record"]
+__all__ = ["damages", "inventory", "read_sound_record", "sha256_of"]
 
 
 _OF_DAMAGED = "record-of-damaged-files.json"
@@ -21,7 +21,7 @@ def inventory(folder: Path) -> dict[str, dict[str, str | int]]:
     return {
         path.relative_to(folder).as_posix(): {
             "bytes": path.stat().st_size,
-            "sha256": _digest(path),
+            "sha256": sha256_of(path),
         }
         for path in sorted(folder.rglob("*"))
         if path.is_file() and path != folder / RECORD_NAME
@@ -47,7 +47,7 @@ def damages(folder: Path, record: Record, *, thorough: bool) -> Iterator[str]:
             yield f"{path} is missing."
         elif path.stat().st_size != told["bytes"]:
             yield f"{path} has {path.stat().st_size} bytes, but was made with {told['bytes']}."
-        elif thorough and _digest(path) != told["sha256"]:
+        elif thorough and sha256_of(path) != told["sha256"]:
             yield f"{path} is not what it was made as (by its SHA-256)."
 
 
@@ -70,6 +70,7 @@ def read_sound_record(folder: Path) -> Record:
     return record
 
 
-def _digest(path: Path) -> str:
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file's content in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

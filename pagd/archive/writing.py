@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
@@ -19,6 +18,7 @@ from pagd.archive.origin import made_of
 from pagd.archive.reading import read_tables
 from pagd.archive.splits import SPLITS, split_of
 from pagd.files import replaced_folder
+from pagd.inventory import sha256_of
 
 __all__ = ["CHECKSUMS", "REPORT", "differing", "report_of", "write_archive"]
 
@@ -94,7 +94,7 @@ def report_of(found: Sequence[Finding]) -> str:
 def _digests(folder: Path) -> dict[str, str]:
     """SHA-256 of all files by their paths in the folder, in the order of these."""
     files = sorted(path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder).as_posix(): _digest(path) for path in files}
+    return {path.relative_to(folder).as_posix(): sha256_of(path) for path in files}
 
 
 def differing(folder: Path) -> list[str]:
@@ -104,10 +104,5 @@ def differing(folder: Path) -> list[str]:
     return [
         name
         for name, digest in told.items()
-        if not (folder / name).is_file() or _digest(folder / name) != digest
+        if not (folder / name).is_file() or sha256_of(folder / name) != digest
     ]
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
