@@ -19,9 +19,9 @@ help: ## List the targets (the default).
 run: .venv/pagd-installed ## Do all of it: training designs, generated designs, simulation, pictures, page; into results/.
 	python workflow/scripts/run_alone.py --profile profiles/default --cores $(CORES)
 
-dataset: .venv/pagd-installed ## Make a public data set of what a run has left, and check it: results/archive/.
-	pagd archive results --out results/archive
-	pagd check-archive results/archive
+dataset: .venv/pagd-installed ## Make a public data set of what a run has left, and check it: results/archive/, and a ZIP file.
+	pagd archive results --out results/archive --zip results/pagd-pneu-nets.zip
+	pagd check-archive results/pagd-pneu-nets.zip
 
 sweep: .venv/pagd-installed ## Do all of it with all generated designs simulated, 1,000 of them: hours.
 	python workflow/scripts/run_alone.py --profile profiles/sweep --cores $(CORES)

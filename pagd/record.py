@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.metadata
 import json
 import platform
@@ -17,12 +18,14 @@ from typing import Any
 from pagd import __version__
 from pagd.errors import InputError, Status
 from pagd.files import must_exist, replaced_folder, write_text
+from pagd.machine import Machine
 from pagd.validation import check, faults
 
 __all__ = [
     "RECORD_NAME",
     "Meter",
     "Record",
+    "configuration_hash",
     "read_record",
     "stage_folder",
     "versions",
@@ -31,6 +34,7 @@ __all__ = [
 
 RECORD_NAME = "record.json"
 SCHEMA_VERSION = 1
+_HASH = "configuration_sha256"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +43,8 @@ class Record:
 
     ``figures`` carries units in its keys; ``timings_s`` is in seconds and holds at least
     ``wall`` and ``cpu`` (children included); ``peak_memory_MB`` is in 10⁶ bytes. ``files`` are
-    those of the folder, see :mod:`pagd.inventory`; older records have none.
+    those of the folder, see :mod:`pagd.inventory`; ``machine`` is of
+    :func:`pagd.machine.machine_class`. Older records have neither.
     """
 
     stage: str
@@ -52,10 +57,24 @@ class Record:
     timings_s: dict[str, float]
     peak_memory_MB: float
     files: dict[str, dict[str, str | int]] = field(default_factory=dict)
+    machine: Machine = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the record as it stands in the file."""
-        return {"schema": SCHEMA_VERSION, **asdict(self), "status": self.status.value}
+        """Return the record as it stands in the file, which has the configuration's hash too."""
+        return {
+            "schema": SCHEMA_VERSION,
+            **asdict(self),
+            "status": self.status.value,
+            _HASH: configuration_hash(self.configuration),
+        }
+
+
+def configuration_hash(configuration: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of a configuration: of its JSON text, with sorted keys and no blanks."""
+    text = json.dumps(
+        configuration, sort_keys=True, separators=(",", ":"), ensure_ascii=False, default=_plain
+    )
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def write_record(record: Record, folder: Path) -> None:
@@ -90,6 +109,7 @@ def read_record(folder: Path) -> Record:
         raise InputError(f"{path}: not a readable record ({error}).") from error
     check(content, "record", f"{path}: not a record")
     del content["schema"]
+    content.pop(_HASH, None)
     return Record(**{**content, "status": Status(content["status"])})
 
 

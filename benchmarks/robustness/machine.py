@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import platform
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import psutil
-
 from pagd.errors import InputError
+from pagd.machine import machine_class
 from pagd.record import read_record
 
 __all__ = ["machine"]
@@ -19,22 +15,7 @@ __all__ = ["machine"]
 
 def machine(folders: Iterable[Path], processes: int) -> dict[str, Any]:
     """Describe this machine, and the versions in the records of the designs' ``folders``."""
-    return {
-        "processor": _processor(),
-        "cores": os.cpu_count(),
-        "memory_GB": psutil.virtual_memory().total / 1e9,
-        "system": f"{platform.system()} {platform.machine()}",
-        "processes": processes,
-        "versions": _versions(folders),
-    }
-
-
-def _processor() -> str:
-    try:
-        found = re.search(r"model name\s*: (.+)", Path("/proc/cpuinfo").read_text("utf-8"))
-    except OSError:
-        found = None
-    return found[1] if found else platform.processor() or platform.machine()
+    return machine_class() | {"processes": processes, "versions": _versions(folders)}
 
 
 def _versions(folders: Iterable[Path]) -> dict[str, str]:

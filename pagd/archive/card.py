@@ -33,7 +33,9 @@ configs:
 """
 
 
-def card(frames: Mapping[str, pd.DataFrame], made_of: Mapping[str, Any]) -> str:
+def card(
+    frames: Mapping[str, pd.DataFrame], made_of: Mapping[str, Any], drawn: Sequence[str] = ()
+) -> str:
     """Return the card of the data set, in Markdown with the head that data hubs read.
 
     Parameters
@@ -41,8 +43,9 @@ def card(frames: Mapping[str, pd.DataFrame], made_of: Mapping[str, Any]) -> str:
     frames
         Its tables by name, all splits together.
     made_of
-        What made it: ``configuration`` (its SHA-256), ``material``, ``paper``, ``mesh``,
-        ``pressure`` and ``versions``, as text.
+        What made it, by name, as text: see :func:`pagd.archive.origin.made_of`.
+    drawn
+        Ids of the designs that there are pictures of.
     """
     return f"""{_HEAD}{_configs()}---
 
@@ -53,7 +56,7 @@ def card(frames: Mapping[str, pd.DataFrame], made_of: Mapping[str, Any]) -> str:
 Made with pagd {__version__}, which implements *Performance-augmented Generative Design* (Ghosh and
 Roy). The designs of that paper were not published; these are drawn by its rules, and analysed with
 other software than its own.
-
+{_pictures(frames, drawn)}
 ## What is in it
 
 {_table(["set", "designs", "by a chamber", "in full"], _counts(frames))}
@@ -77,7 +80,10 @@ simpler one is not to be trusted. Designs that failed are in the tables too:
 
 {_table(["what", "is"], [[key, str(value)] for key, value in made_of.items()])}
 
-`CHECKS.md` is the report of the checks, `SHA256SUMS` has the checksums of all files.
+Every analysis names what made it in the column `provenance`: `provenance.json` tells the whole
+configuration with its SHA-256, the versions, and the class of the machine. `CHECKS.md` is the
+report of the checks, `SHA256SUMS` has the checksums of all files, `datacite.json` the metadata that
+a DOI is registered with.
 
 ## What to bear in mind
 
@@ -116,6 +122,19 @@ mlcroissant.Dataset("croissant.json").records("performance/train")
 
 The geometry of a design follows from its parameters: `pagd geometry --design '{{"L": …}}' --out
 geometry` writes it as OpenSCAD and STL.
+"""
+
+
+def _pictures(frames: Mapping[str, pd.DataFrame], drawn: Sequence[str]) -> str:
+    """The picture of a sample, and where those of its designs are."""
+    if not drawn:
+        return ""
+    names = frames["designs"].set_index("id")["design_id"]
+    one_by_one = ", ".join(f"[{names[one]}](pictures/{one}.png)" for one in drawn)
+    return f"""
+![Some of the designs that were analysed in full, drawn at random](pictures/sample.png)
+
+One by one, as the pressure rises: {one_by_one}.
 """
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -12,7 +13,8 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pagd.archive.tables import TABLES
+from pagd.archive.provenance import Provenance, key_of, of_screening, of_simulation
+from pagd.archive.tables import PROVENANCE, TABLES
 from pagd.dataset import designs_of, frame_of, read_frame
 from pagd.design import identity
 from pagd.errors import InputError
@@ -22,7 +24,7 @@ from pagd.stages.geometry import read_design
 from pagd.stages.novelty import novelty_of
 from pagd.summary import GATHERED, write_gathered, write_summary
 
-__all__ = ["collected"]
+__all__ = ["Collected", "collected"]
 
 #: Tables of designs of a run by the set that they are, and the folder of their screening.
 _SETS: Final = {
@@ -38,7 +40,29 @@ _FILES: Final = {"performance": "performance.parquet"} | {
 }
 
 
-def collected(results: Path, more: Sequence[Path] = ()) -> dict[str, pa.Table]:
+@dataclass(frozen=True, slots=True)
+class Collected:
+    """All that a run has left.
+
+    ``tables`` by name, with the columns of :data:`pagd.archive.tables.TABLES`; ``provenance`` by
+    the key that the table ``performance`` has; ``folders`` of simulated designs by id.
+    """
+
+    tables: dict[str, pa.Table]
+    provenance: dict[str, Provenance]
+    folders: dict[str, Path]
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Tables of analyses in a folder: ids of the designs by name, keys of what made them by id."""
+
+    folder: Path
+    ids: Mapping[str, str]
+    made_by: Mapping[str, str]
+
+
+def collected(results: Path, more: Sequence[Path] = ()) -> Collected:
     """Return the tables of the data set: each design once, and every analysis of it.
 
     Parameters
@@ -50,9 +74,9 @@ def collected(results: Path, more: Sequence[Path] = ()) -> dict[str, pa.Table]:
 
     Returns
     -------
-    dict
-        Table by name, with the columns of :data:`pagd.archive.tables.TABLES`. Designs are in the
-        order of their sets; analyses by a chamber come first, then those in full.
+    Collected
+        Designs are in the order of their sets; analyses by a chamber come first, then those in
+        full.
 
     Raises
     ------
@@ -64,14 +88,43 @@ def collected(results: Path, more: Sequence[Path] = ()) -> dict[str, pa.Table]:
     simulated = _simulated([results / "designs", *more])
     others = _others(simulated, {i for frame in frames.values() for i in frame["id"]})
     designs = pd.concat([*frames.values(), others]).drop_duplicates("id")
-    parts = [(results / screening, _ids(frames[name])) for name, (_, screening) in _SETS.items()]
+    parts, provenance = _screened(results, frames)
     with tempfile.TemporaryDirectory(prefix="pagd-") as folder:
         _sum_up(list(simulated.values()), results / "dataset", Path(folder))
-        parts.append((Path(folder), {name: _identity_of(p) for name, p in simulated.items()}))
-        analyses = {name: _joined(name, parts) for name in _FILES}
-    return {
-        "designs": pa.Table.from_pandas(designs, _schema("designs"), preserve_index=False)
-    } | analyses
+        full = _in_full(Path(folder), simulated, provenance)
+        analyses = {name: _joined(name, [*parts, full]) for name in _FILES}
+    table = pa.Table.from_pandas(designs, _schema("designs"), preserve_index=False)
+    folders = {full.ids[name]: simulated[name] for name in simulated}
+    return Collected({"designs": table} | analyses, provenance, folders)
+
+
+def _screened(
+    results: Path, frames: Mapping[str, pd.DataFrame]
+) -> tuple[list[_Part], dict[str, Provenance]]:
+    """The screenings that are there, and what made them."""
+    parts, provenance = [], {}
+    for name, (_, screening) in _SETS.items():
+        if not (results / screening / RECORD_NAME).is_file():
+            continue
+        made_by = of_screening(results / screening)
+        provenance[key_of(made_by)] = made_by
+        ids = _ids(frames[name])
+        keys = dict.fromkeys(ids.values(), key_of(made_by))
+        parts.append(_Part(results / screening, ids, keys))
+    return parts, provenance
+
+
+def _in_full(
+    folder: Path, simulated: Mapping[str, Path], provenance: dict[str, Provenance]
+) -> _Part:
+    """The simulated designs, with tables in ``folder``; what made them is added."""
+    ids = {name: _identity_of(path) for name, path in simulated.items()}
+    keys = {}
+    for name, path in simulated.items():
+        made_by = of_simulation(path)
+        keys[ids[name]] = key_of(made_by)
+        provenance.setdefault(keys[ids[name]], made_by)
+    return _Part(folder, ids, keys)
 
 
 def _frame(path: Path, which: str) -> pd.DataFrame:
@@ -146,16 +199,20 @@ def _sum_up(simulated: Sequence[Path], dataset: Path, out: Path) -> None:
     write_gathered(metrics, out)
 
 
-def _joined(name: str, parts: Sequence[tuple[Path, Mapping[str, str]]]) -> pa.Table:
+def _joined(name: str, parts: Sequence[_Part]) -> pa.Table:
     """A table of analyses: the rows of all folders that have it, by the ids of their designs."""
     schema, found = _schema(name), []
-    for folder, ids in parts:
-        path = folder / _FILES[name]
+    for part in parts:
+        path = part.folder / _FILES[name]
         if not path.is_file():
             continue
         table = pq.read_table(path)
-        own = pa.array([ids[one] for one in table.column("design_id").to_pylist()], pa.string())
-        found.append(table.add_column(0, "id", own).select(schema.names).cast(schema))
+        own = [part.ids[one] for one in table.column("design_id").to_pylist()]
+        table = table.add_column(0, "id", pa.array(own, pa.string()))
+        if PROVENANCE.name in schema.names:
+            keys = pa.array([part.made_by[one] for one in own], pa.string())
+            table = table.append_column(PROVENANCE.name, keys)
+        found.append(table.select(schema.names).cast(schema))
     return pa.concat_tables(found) if found else schema.empty_table()
 
 

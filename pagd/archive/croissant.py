@@ -18,7 +18,7 @@ from pagd.archive.splits import SPLITS
 from pagd.archive.tables import TABLES, Archived
 from pagd.tables import Column
 
-__all__ = ["CROISSANT", "croissant"]
+__all__ = ["CREATOR", "CROISSANT", "KEYWORDS", "croissant"]
 
 CROISSANT: Final = "croissant.json"
 
@@ -30,9 +30,9 @@ _TYPES: Final = {
 }
 _PARQUET: Final = "application/x-parquet"
 _LICENCE: Final = "https://spdx.org/licenses/MIT.html"
-_CREATOR: Final = "The pagd authors"
+CREATOR: Final = "The pagd authors"
 _CITATION: Final = f"The pagd authors: {NAME}, made with pagd {__version__}."
-_KEYWORDS: Final = (
+KEYWORDS: Final = (
     "soft robotics",
     "soft pneumatic actuator",
     "pneu-net",
@@ -67,9 +67,9 @@ def croissant(digests: Mapping[str, str], published: date) -> str:
         description=DESCRIPTION,
         version=__version__,
         license=[_LICENCE],
-        creators=[mlc.Organization(name=_CREATOR)],
+        creators=[mlc.Organization(name=CREATOR)],
         cite_as=_CITATION,
-        keywords=list(_KEYWORDS),
+        keywords=list(KEYWORDS),
         date_published=datetime(published.year, published.month, published.day),
         distribution=files,
         record_sets=sets,

@@ -2,22 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from pagd.errors import InputError
-from pagd.record import RECORD_NAME, Record, read_record
+from pagd.record import RECORD_NAME, Record, configuration_hash, read_record
 
-__all__ = ["configuration_hash", "made_of"]
-
-
-def configuration_hash(configuration: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of a configuration: of its JSON text, with sorted keys and no blanks."""
-    text = json.dumps(configuration, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+__all__ = ["made_of"]
 
 
 def made_of(results: Path) -> dict[str, str]:

@@ -7,9 +7,13 @@ from typing import Final, NamedTuple
 
 from pagd.tables import CHAMBERS, DESIGNS, MEASURES, PERFORMANCE, TRAJECTORY, Column
 
-__all__ = ["TABLES", "Archived"]
+__all__ = ["PROVENANCE", "TABLES", "Archived"]
 
 ID: Final = Column("id", "string", "", "hash of the parameters: 16 hexadecimal digits")
+
+PROVENANCE: Final = Column(
+    "provenance", "string", "", "what made it, by its name in provenance.json"
+)
 
 
 class Archived(NamedTuple):
@@ -30,7 +34,9 @@ TABLES: Final = {
         ),
         "a design",
     ),
-    "performance": Archived((ID, *PERFORMANCE), "a design and fidelity, whatever became of it"),
+    "performance": Archived(
+        (ID, *PERFORMANCE, PROVENANCE), "a design and fidelity, whatever became of it"
+    ),
     "by_pressure": Archived((ID, *MEASURES), "a design, fidelity and recorded pressure"),
     "trajectories": Archived(
         (ID, *TRAJECTORY), "a design, fidelity, recorded pressure and section"

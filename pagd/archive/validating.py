@@ -1,19 +1,22 @@
-"""Whether the metadata of a data set is sound Croissant, by its own library, and loads the data."""
+"""Whether what describes a data set is sound: its Croissant, by its own library; its provenance."""
 
 from __future__ import annotations
 
+import json
 from itertools import islice
 from pathlib import Path
 
 import mlcroissant as mlc
+import pandas as pd
 import pyarrow.parquet as pq
 
 from pagd.archive.croissant import CROISSANT
+from pagd.archive.provenance import PROVENANCE, key_of
 from pagd.archive.splits import SPLITS
 from pagd.archive.tables import TABLES
 from pagd.files import must_exist
 
-__all__ = ["faults_of_metadata"]
+__all__ = ["faults_of_metadata", "faults_of_provenance"]
 
 
 def faults_of_metadata(folder: Path) -> list[str]:
@@ -42,6 +45,30 @@ def faults_of_metadata(folder: Path) -> list[str]:
         for split in SPLITS
         if not _loads(dataset, folder, f"{table}/{split}")
     ]
+
+
+def faults_of_provenance(folder: Path, performance: pd.DataFrame) -> list[str]:
+    """Return what made an analysis of the data set and is not told, a sentence each.
+
+    Parameters
+    ----------
+    folder
+        The data set.
+    performance
+        Its table of that name.
+
+    Raises
+    ------
+    InputError
+        If it has no file of its provenance.
+    """
+    path = folder / PROVENANCE
+    must_exist(path)
+    told = json.loads(path.read_text(encoding="utf-8"))
+    wrong = [key for key, made_by in told.items() if key_of(made_by) != key]
+    faults = [f"{key} is not the hash of what it names." for key in wrong]
+    named = performance["provenance"].fillna("nothing").unique()
+    return faults + [f"an analysis names {key}, which is not there." for key in {*named} - {*told}]
 
 
 def _loads(dataset: mlc.Dataset, folder: Path, key: str) -> bool:

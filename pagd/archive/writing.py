@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from datetime import date
 from pathlib import Path
 
@@ -14,7 +15,10 @@ from pagd.archive.card import CARD, DICTIONARY, card, dictionary
 from pagd.archive.checks import Finding, check_tables
 from pagd.archive.collecting import collected
 from pagd.archive.croissant import CROISSANT, croissant
+from pagd.archive.datacite import DATACITE, datacite
 from pagd.archive.origin import made_of
+from pagd.archive.pictures import draw_sample, sample_of
+from pagd.archive.provenance import PROVENANCE
 from pagd.archive.reading import read_tables
 from pagd.archive.splits import SPLITS, split_of
 from pagd.files import replaced_folder
@@ -28,7 +32,11 @@ REPORT = "CHECKS.md"
 
 
 def write_archive(
-    results: Path, out: Path, more: Sequence[Path] = (), published: date | None = None
+    results: Path,
+    out: Path,
+    more: Sequence[Path] = (),
+    published: date | None = None,
+    pictures: int = 12,
 ) -> list[Finding]:
     """Write the data set that a run leaves, and check it.
 
@@ -40,6 +48,8 @@ def write_archive(
         Folder to make, or to replace where it is a data set.
     published
         Date of publication; today's unless given.
+    pictures
+        How many of the simulated designs are drawn.
 
     Returns
     -------
@@ -51,24 +61,29 @@ def write_archive(
     InputError
         If the run has no data set or no screened designs, or what it has cannot be used.
     """
-    origin = made_of(results)
-    tables = collected(results, more)
+    origin, published = made_of(results), published or date.today()
+    found = collected(results, more)
+    sample = sample_of(found.folders, pictures)
     with replaced_folder(out, CHECKSUMS) as folder:
-        for name, table in tables.items():
+        for name, table in found.tables.items():
             _write_splits(folder / "data" / name, table)
-        frames = read_tables(folder)
-        found = check_tables(frames)
+        frames, tables = read_tables(folder), _files(folder)
+        findings = check_tables(frames)
+        made_by = json.dumps(found.provenance, indent=2, ensure_ascii=False)
         texts = {
-            CROISSANT: croissant(_digests(folder), published or date.today()),
-            CARD: card(frames, origin),
+            CROISSANT: croissant(_digests(tables), published),
+            DATACITE: datacite(published, {name: p.stat().st_size for name, p in tables.items()}),
+            PROVENANCE: f"{made_by}\n",
+            CARD: card(frames, origin, list(sample)),
             DICTIONARY: dictionary(),
-            REPORT: report_of(found),
+            REPORT: report_of(findings),
         }
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
-        lines = [f"{digest}  {name}" for name, digest in _digests(folder).items()]
+        draw_sample(sample, folder)
+        lines = [f"{digest}  {name}" for name, digest in _digests(_files(folder)).items()]
         (folder / CHECKSUMS).write_text("\n".join([*lines, ""]), encoding="utf-8")
-    return found
+    return findings
 
 
 def _write_splits(folder: Path, table: pa.Table) -> None:
@@ -91,10 +106,14 @@ def report_of(found: Sequence[Finding]) -> str:
     return "\n".join([*lines, ""])
 
 
-def _digests(folder: Path) -> dict[str, str]:
-    """SHA-256 of all files by their paths in the folder, in the order of these."""
-    files = sorted(path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder).as_posix(): sha256_of(path) for path in files}
+def _files(folder: Path) -> dict[str, Path]:
+    """All files of a folder by their paths in it, in the order of these."""
+    found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*")}
+    return {name: found[name] for name in sorted(found) if found[name].is_file()}
+
+
+def _digests(files: Mapping[str, Path]) -> dict[str, str]:
+    return {name: sha256_of(path) for name, path in files.items()}
 
 
 def differing(folder: Path) -> list[str]:

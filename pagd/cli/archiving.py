@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Sequence
 from datetime import date
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pagd.errors import InputError
@@ -17,9 +18,16 @@ __all__ = ["archive", "check_archive"]
 
 def archive(options: Namespace) -> int:
     """Write the data set that a run leaves; 1 if it breaks a rule."""
+    from pagd.archive.packing import pack
     from pagd.archive.writing import write_archive
 
-    found = write_archive(options.results, options.out, options.more, _date(options.date))
+    if options.pictures < 0:
+        raise InputError(f"--pictures = {options.pictures} must be 0 or more.")
+    found = write_archive(
+        options.results, options.out, options.more, _date(options.date), options.pictures
+    )
+    if options.zip is not None:
+        pack(options.out, options.zip)
     return _told(found, f"{options.out} is written")
 
 
@@ -32,19 +40,30 @@ def _date(text: str | None) -> date | None:
 
 def check_archive(options: Namespace) -> int:
     """Check a data set: its checksums, its metadata and its tables; 1 if anything is wrong."""
+    from pagd.archive.packing import unpacked
+
+    with unpacked(options.archive) as folder:
+        return _checked(folder, options.archive)
+
+
+def _checked(folder: Path, told: Path) -> int:
     from pagd.archive.checks import check_tables
     from pagd.archive.reading import read_tables
-    from pagd.archive.validating import faults_of_metadata
+    from pagd.archive.validating import faults_of_metadata, faults_of_provenance
     from pagd.archive.writing import differing
 
-    changed = differing(options.archive)
+    changed = differing(folder)
     for name in changed:
         print(f"{name} is missing, or not what its checksum says.")
-    faults = faults_of_metadata(options.archive)
+    faults = faults_of_metadata(folder)
     for fault in faults:
         print(f"croissant.json: {fault}")
-    code = _told(check_tables(read_tables(options.archive)), f"{options.archive} is read")
-    return 1 if changed or faults else code
+    tables = read_tables(folder)
+    unknown = faults_of_provenance(folder, tables["performance"])
+    for fault in unknown:
+        print(f"provenance.json: {fault}")
+    code = _told(check_tables(tables), f"{told} is read")
+    return 1 if changed or faults or unknown else code
 
 
 def _told(found: Sequence[Finding], done: str) -> int:

@@ -279,10 +279,18 @@ def _add_archiving(commands: Any) -> None:
         help="folders of designs that were simulated elsewhere",
     )
     archive.add_argument("--date", metavar="DATE", help="of publication (default: today)")
+    archive.add_argument(
+        "--pictures", type=int, default=12, metavar="N", help="simulated designs to draw (12)"
+    )
+    archive.add_argument(
+        "--zip", type=Path, metavar="FILE", help="write all of it to a ZIP file as well"
+    )
     add_out(archive)
     check = add_command(
         commands, "check-archive", "archiving:check_archive", "whether a data set is sound"
     )
-    check.add_argument("archive", type=Path, metavar="FOLDER", help="folder of the data set")
+    check.add_argument(
+        "archive", type=Path, metavar="FOLDER", help="folder of the data set, or its ZIP file"
+    )
     for command in (archive, check):
         add_verbose(command)

@@ -61,7 +61,7 @@ _SEED_OF_PARTS = 0
 # The stages whose meaning is that of a screening too, and those of full analyses.
 _OF_STAGES = ("screening", "mesh", "solve", "metrics")
 _OF_FULL_ANALYSES = ("geometry", "repair")
-_LIBRARIES = ("numba", "numpy", "pypardiso", "scipy")
+_LIBRARIES = ("mkl", "numba", "numpy", "pypardiso", "scipy")
 # Seconds between two lines that tell how far it is.
 _TELL = 10.0
 
@@ -188,6 +188,7 @@ def gather(parts: Sequence[Path], out: Path) -> Record:
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         outcome.figures |= _gathered(parts, folder)
+        outcome.figures["made_by"] = _made_by(records)
 
     return run_stage(
         "screening",
@@ -204,6 +205,12 @@ def _gathered(parts: Sequence[Path], folder: Path) -> dict[str, Any]:
     for name, columns in TABLES.items():
         concatenate(folder / name, [one / name for one in parts], columns)
     return _figures(folder)
+
+
+def _made_by(records: Sequence[Record]) -> list[dict[str, Any]]:
+    """Versions and machines of the parts, each pair of them once."""
+    pairs = [{"versions": record.versions, "machine": record.machine} for record in records]
+    return [pair for place, pair in enumerate(pairs) if pair not in pairs[:place]]
 
 
 def _discard(kept: Path) -> None:

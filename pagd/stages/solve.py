@@ -174,7 +174,7 @@ def run(
             "mesh": file.name,
         },
         upstream=upstream,
-        libraries=("numba", "numpy", "pypardiso", "scipy"),
+        libraries=("mkl", "numba", "numpy", "pypardiso", "scipy"),
     )
 
 

@@ -12,6 +12,7 @@ from pagd.errors import StageFailure, Status
 from pagd.files import emptied
 from pagd.inventory import inventory
 from pagd.limits import in_force, run_apart
+from pagd.machine import machine_class
 from pagd.record import Meter, Record, stage_folder, versions, write_record
 from pagd.stages import STAGE_VERSIONS
 
@@ -106,6 +107,7 @@ def run_stage(
             timings_s=meter.timings_s(),
             peak_memory_MB=meter.peak_memory_MB(),
             files=files,
+            machine=machine_class(),
         )
         write_record(record, folder)
     _report(record)

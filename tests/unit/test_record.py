@@ -1,4 +1,6 @@
+import hashlib
 import json
+import platform
 import subprocess
 import sys
 from dataclasses import replace
@@ -9,10 +11,12 @@ import pytest
 
 from pagd import __version__
 from pagd.errors import InputError, Status
+from pagd.machine import machine_class
 from pagd.record import (
     RECORD_NAME,
     Meter,
     Record,
+    configuration_hash,
     read_record,
     stage_folder,
     versions,
@@ -40,6 +44,21 @@ def test_record_round_trip(record: Record, tmp_path: Path) -> None:
     read = read_record(tmp_path)
     assert read == replace(record, figures={"tets": 5, "volume_mm3": 1.5, "sizes": [0, 1]})
     assert read.status is Status.mesh_failed
+
+
+def test_a_record_tells_machine_and_configuration(record: Record, tmp_path: Path) -> None:
+    write_record(replace(record, machine=machine_class()), tmp_path)
+    content = json.loads((tmp_path / RECORD_NAME).read_text())
+    text = json.dumps(record.configuration, sort_keys=True, separators=(",", ":"))
+    assert content["configuration_sha256"] == hashlib.sha256(text.encode()).hexdigest()
+    assert set(content["machine"]) == {"processor", "cores", "memory_GB", "system"}
+    assert platform.node() not in json.dumps(content["machine"])
+    assert read_record(tmp_path).machine == content["machine"]
+
+
+def test_the_order_of_a_configuration_does_not_change_its_hash() -> None:
+    assert configuration_hash({"a": 1, "b": 0.5}) == configuration_hash({"b": 0.5, "a": 1})
+    assert configuration_hash({"a": 1}) != configuration_hash({"a": 2})
 
 
 @pytest.mark.parametrize(

@@ -16,16 +16,23 @@ import mlcroissant as mlc
 import pandas as pd
 import pytest
 import yaml
+from datacite import schema45
 
 from pagd.archive.checks import CHECKS, check_tables
+from pagd.archive.packing import pack, unpacked
+from pagd.archive.pictures import sample_of
 from pagd.archive.reading import read_tables
 from pagd.archive.splits import SPLITS, split_of
 from pagd.archive.tables import TABLES
+from pagd.archive.validating import faults_of_provenance
 from pagd.archive.writing import differing, write_archive
 from pagd.catalogue import read_designs
 from pagd.cli import main
 from pagd.design import identity
 from pagd.errors import InputError
+from pagd.machine import machine_class
+from pagd.record import configuration_hash, read_record
+from pagd.stages.geometry import read_design
 from pagd.tables import read_rows
 
 from .conftest import GENERATIVE, STRAIGHT, Project
@@ -55,7 +62,7 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Project:
 def archive(simulated: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The data set of a run."""
     out = tmp_path_factory.mktemp("archive") / "set"
-    found = write_archive(simulated / "", out, published=PUBLISHED)
+    found = write_archive(simulated / "", out, published=PUBLISHED, pictures=2)
     assert [(f.rule, f.broken) for f in found if f.broken] == [(INCOMPLETE, 290)]
     return out
 
@@ -94,11 +101,20 @@ def test_ids_are_those_of_the_parameters_and_tell_the_split(
         assert (frame["id"].map(split_of) == frame["split"]).all()
 
 
-def test_checksums_tell_what_has_changed(archive: Path, tmp_path: Path) -> None:
+def folders_of_designs(simulated: Project) -> dict[str, Path]:
+    """Folders of the simulated designs by id."""
+    found = (simulated / "designs").iterdir()
+    return {identity(read_design(folder / "geometry").design): folder for folder in found}
+
+
+def test_checksums_tell_what_has_changed(simulated: Project, archive: Path) -> None:
     assert differing(archive) == []
     names = [line.split("  ")[1] for line in (archive / "SHA256SUMS").read_text().splitlines()]
+    drawn = sample_of(folders_of_designs(simulated), 2)
+    assert len(drawn) == 2
     assert set(names) == {
-        "CHECKS.md", "COLUMNS.md", "README.md", "croissant.json",
+        "CHECKS.md", "COLUMNS.md", "README.md", "croissant.json", "datacite.json",
+        "provenance.json", *(f"pictures/{one}.png" for one in ("sample", *drawn)),
         *(f"data/{table}/{split}.parquet" for table in TABLES for split in SPLITS)
     }  # fmt: skip
 
@@ -106,9 +122,60 @@ def test_checksums_tell_what_has_changed(archive: Path, tmp_path: Path) -> None:
 def test_the_same_run_gives_the_same_bytes(
     simulated: Project, archive: Path, tmp_path: Path
 ) -> None:
-    write_archive(simulated / "", tmp_path / "again", published=PUBLISHED)
+    write_archive(simulated / "", tmp_path / "again", published=PUBLISHED, pictures=2)
     again = (tmp_path / "again" / "SHA256SUMS").read_text()
     assert again == (archive / "SHA256SUMS").read_text()
+    pack(archive, tmp_path / "one.zip")
+    pack(tmp_path / "again", tmp_path / "two.zip")
+    assert (tmp_path / "one.zip").read_bytes() == (tmp_path / "two.zip").read_bytes()
+
+
+def test_the_file_of_a_data_set_holds_all_of_it(archive: Path, tmp_path: Path) -> None:
+    pack(archive, tmp_path / "set.zip")
+    with unpacked(tmp_path / "set.zip") as folder:
+        assert folder.name.startswith("pagd-pneu-nets-")
+        assert differing(folder) == []
+        assert (folder / "SHA256SUMS").read_bytes() == (archive / "SHA256SUMS").read_bytes()
+    (tmp_path / "no.zip").write_text("nothing")
+    with pytest.raises(InputError, match="nor a ZIP file of one"), unpacked(tmp_path / "no.zip"):
+        pass
+
+
+def test_every_analysis_tells_what_made_it(
+    simulated: Project, archive: Path, frames: dict[str, pd.DataFrame]
+) -> None:
+    told = json.loads((archive / "provenance.json").read_text())
+    performance = frames["performance"]
+    assert set(performance["provenance"]) == set(told)
+    keys = performance.groupby("fidelity")["provenance"].agg(set)
+    (cells,), (full,) = keys["cells"], keys["full"]
+    solved = read_record(simulated / "designs/straight/solve")
+    assert told[full]["configuration"]["solve"] == solved.configuration["solve"]
+    assert told[full]["versions"]["solve"] == [solved.versions]
+    screened = read_record(simulated / "screening/training")
+    assert told[cells]["configuration_sha256"] == configuration_hash(screened.configuration)
+    assert told[cells]["machines"] == told[full]["machines"] == [machine_class()]
+
+
+def test_an_analysis_without_provenance_is_told(
+    archive: Path, frames: dict[str, pd.DataFrame], tmp_path: Path
+) -> None:
+    assert faults_of_provenance(archive, frames["performance"]) == []
+    told = json.loads((archive / "provenance.json").read_text())
+    first, second = told
+    (tmp_path / "provenance.json").write_text(json.dumps({first: told[second]}))
+    assert faults_of_provenance(tmp_path, frames["performance"]) == [
+        f"{first} is not the hash of what it names.",
+        f"an analysis names {second}, which is not there.",
+    ]
+
+
+def test_the_metadata_of_a_doi_keep_to_their_schema(archive: Path) -> None:
+    content = json.loads((archive / "datacite.json").read_text())
+    assert list(schema45.validator.iter_errors(content)) == []
+    assert content["publicationYear"] == "2026"
+    tables = list(archive.glob("data/*/*.parquet"))
+    assert content["sizes"][0] == f"{sum(table.stat().st_size for table in tables)} bytes"
 
 
 def test_designs_simulated_elsewhere_join(simulated: Project, tmp_path: Path) -> None:

@@ -1,0 +1,42 @@
+"""Pictures of a sample of the simulated designs of a data set."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+from pagd.figures.deformed import draw_deformed
+from pagd.figures.gallery import draw_gallery
+from pagd.figures.load import has_states
+
+__all__ = ["GALLERY", "draw_sample", "sample_of"]
+
+#: Picture of the whole sample, in the data set.
+GALLERY: Final = "pictures/sample.png"
+
+
+def sample_of(folders: Mapping[str, Path], count: int) -> dict[str, Path]:
+    """Return a random sample of the designs that have deformed shapes, always the same one.
+
+    Parameters
+    ----------
+    folders
+        Folders of simulated designs by id.
+    count
+        How many are wanted; fewer where there are not so many.
+    """
+    drawable = [identity for identity in folders if has_states(folders[identity])]
+    # The first digits of a hash tell the split: by the last ones, all splits have their share.
+    chosen = sorted(drawable, key=lambda identity: identity[::-1])[:count]
+    return {identity: folders[identity] for identity in chosen}
+
+
+def draw_sample(sample: Mapping[str, Path], archive: Path) -> None:
+    """Draw the designs of a sample together, and the deformed shapes of each by its id."""
+    if not sample:
+        return
+    (archive / GALLERY).parent.mkdir()
+    draw_gallery(list(sample.values()), archive / GALLERY)
+    for identity, folder in sample.items():
+        draw_deformed(folder, (archive / GALLERY).with_name(f"{identity}.png"))
