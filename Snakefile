@@ -29,6 +29,7 @@ localrules:
     fronts,
     summary_tables,
     report_page,
+    run_crate,
 
 
 include: "workflow/rules/common.smk"  # configuration and designs, checked; input functions

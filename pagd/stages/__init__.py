@@ -23,4 +23,5 @@ STAGE_VERSIONS = {
     "generative_figures": 4,
     "summary": 5,
     "report": 6,
+    "run_crate": 1,
 }

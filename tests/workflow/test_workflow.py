@@ -30,6 +30,8 @@ GATHERED = {
     "figures/together",
     "figures/simulated",
     "report/index.html",
+    "ro-crate-metadata.json",
+    "provenance",
 }
 
 
@@ -213,7 +215,8 @@ def test_a_changed_picture_runs_pictures_only(changed: Project) -> None:
     changed.write(STRAIGHT, SLANTED, THIN, figures={"resolution_dpi": 70})
     drawn = {f"designs/{name}/figures" for name in ("straight", "slanted", "thin")}
     pictures = {"figures/together", "figures/simulated", "report/index.html"}
-    assert changed.pending() == drawn | pictures
+    told = {"ro-crate-metadata.json", "provenance"}
+    assert changed.pending() == drawn | pictures | told
 
 
 def test_a_changed_material_runs_from_the_solve_on(changed: Project) -> None:

@@ -17,6 +17,7 @@ from pagd.config import (
     completed,
     known_tables,
     material_as_json,
+    material_file,
     part_as_json,
     refusal_of_cells,
     retyped,
@@ -111,6 +112,12 @@ def growing(amount):
 def tries_left(wildcards, attempt):
     """How many tries may follow: at the last one, a limit exceeded is how the design ends."""
     return max(0, TRIES - attempt)
+
+
+def files_of_configuration():
+    """The files that the configuration names: tables of designs, and materials."""
+    files = [*CONFIG["designs"].values(), str(material_file(CONFIG))]
+    return files + list(known_tables(CONFIG).values()) if GENERATIVE else files
 
 
 def of_generative_half(path):

@@ -1,4 +1,4 @@
-# Pictures and the page.
+# Pictures, the page, and what the whole run says of itself.
 
 
 rule publish:
@@ -9,6 +9,7 @@ rule publish:
         of_generative_half("results/figures/generative"),
         of_screening("results/figures/screening"),
         "results/report/index.html",
+        "results/ro-crate-metadata.json",
 
 
 rule figures:
@@ -188,3 +189,27 @@ rule report_page:
         "Write the page: results/report/index.html."
     script:
         "../scripts/report_page.py"
+
+
+rule run_crate:
+    input:
+        performance=rules.summary_tables.output.performance,
+        page=rules.report_page.output.page,
+    output:
+        metadata="results/ro-crate-metadata.json",
+        provenance=directory("results/provenance"),
+    log:
+        "results/logs/run_crate.log",
+    benchmark:
+        "results/benchmarks/run_crate.tsv"
+    resources:
+        mem_mb=1000,
+        runtime=10,
+    params:
+        version=STAGE_VERSIONS["run_crate"],
+        configuration=json.dumps(CONFIG),
+        tables=files_of_configuration(),
+    message:
+        "Tell what made the run: results/ro-crate-metadata.json."
+    script:
+        "../scripts/run_crate.py"
