@@ -136,7 +136,8 @@ def test_every_table_has_the_columns_of_the_data_dictionary(finished: Project) -
 
 def test_without_a_selection_there_is_no_generative_half(finished: Project) -> None:
     assert {path.name for path in (finished / "").iterdir()} == {
-        "benchmarks", "designs", "figures", "logs", "report", "summary"
+        "benchmarks", "designs", "figures", "logs", "provenance", "report",
+        "ro-crate-metadata.json", "summary"
     }  # fmt: skip
     answer = finished.snakemake("--dry-run", "--forceall")
     assert not re.search(rf"^({'|'.join(GENERATIVE_RULES)}) ", said(answer), re.MULTILINE)

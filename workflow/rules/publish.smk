@@ -210,6 +210,6 @@ rule run_crate:
         configuration=json.dumps(CONFIG),
         tables=files_of_configuration(),
     message:
-        "Tell what made the run: results/ro-crate-metadata.json."
+        "Describe what has made the results in results/ro-crate-metadata.json."
     script:
         "../scripts/run_crate.py"
