@@ -15,7 +15,7 @@ import numpy as np
 
 from pagd.errors import StageFailure, Status
 from pagd.mesh.surfaces import Surface, SurfacePair, merge_points
-from pagd.mesh.topology import BoolArray, doubled_areas, open_edges
+from pagd.mesh.topology import BoolArray, crowded_edges, doubled_areas, open_edges
 from pagd.mesh.types import FloatArray, IntArray
 
 __all__ = ["Complex", "Patch", "join"]
@@ -75,6 +75,12 @@ def _check_closed(part: str, surface: Surface) -> None:
     gaps = len(open_edges(surface.triangles))
     if gaps:
         raise _failure(f"The surface of the {part} is not closed: {gaps} edges have one triangle")
+    crowded = len(crowded_edges(surface.triangles))
+    if crowded:
+        raise _failure(
+            f"The surface of the {part} is not that of a solid: {crowded} edges have more than two "
+            "triangles"
+        )
     if surface.volume() <= 0.0:
         raise _failure(f"The surface of the {part} is inside out: it encloses a negative volume")
 

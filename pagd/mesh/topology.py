@@ -90,6 +90,12 @@ def open_edges(triangles: IntArray) -> IntArray:
     return np.asarray(edges[occurrences(np.sort(edges, axis=1)) == 1])
 
 
+def crowded_edges(triangles: IntArray) -> IntArray:
+    """Return the edges (k, 2) that more than two triangles share, each once."""
+    edges = np.sort(triangle_edges(triangles), axis=1)
+    return np.unique(edges[occurrences(edges) > 2], axis=0)
+
+
 def edge_neighbours(triangles: IntArray, labels: IntArray | None = None) -> IntArray:
     """Return pairs (k, 2) of triangles that share an edge and, if given, have equal labels."""
     edges = np.sort(triangle_edges(triangles), axis=1)

@@ -118,6 +118,8 @@ def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
         except StageFailure as failure:
             where = f"body {own.body} and base {own.base}"
             raise InputError(f"{where}: {failure.reason}") from None
+        except InputError as error:
+            raise InputError(f"{own.body}: {error}") from None
         _mesh(pair, None, folder, outcome, config["mesh"])
 
     return run_stage(
