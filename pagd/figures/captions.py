@@ -56,15 +56,6 @@ TOGETHER: Final[Mapping[str, str]] = {
     " held from the start. Each curve ends where its analysis did.",
     "paths": "Where the tips go under rising pressure, a marker at every recorded pressure; wide"
     " and pale: centre lines at the last pressure. Point at a marker for its pressure.",
-    "bending_twist": f"Bending and twist of the tip of every simulated design, at the last"
-    f" pressure it reached. {_ANGLES} Colour and shape: mode the design was drawn for; open:"
-    " Table 2 of the paper and published actuators; crosses: designs that did not end well. A click"
-    " opens the design.",
-    "force_bending": "Blocked force against bending of the free tip, each at the last pressure its"
-    " analysis reached. Looks as in the plot of bending and twist.",
-    "novelty_bending": "Bending of the tip at the last pressure against novelty, the distance to"
-    " the nearest training design in the space of standardised and one-hot parameters; 0: the"
-    " design is itself in the training set. Looks as in the plot of bending and twist.",
 }
 
 

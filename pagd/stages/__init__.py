@@ -22,6 +22,6 @@ STAGE_VERSIONS = {
     "figures": 3,
     "generative_figures": 4,
     "summary": 5,
-    "report": 6,
+    "report": 7,
     "run_crate": 1,
 }

@@ -8,12 +8,15 @@ import re
 import shutil
 import subprocess
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from design_samples import TABLE2_MIXED
 from figure_samples import SIZE, block, path_only, record, solved, states_of, three_designs
 from PIL import Image
 
+from pagd.dataset import frame_of
 from pagd.errors import InputError
 from pagd.figures import viewer
 from pagd.figures.alternatives import ALTERNATIVES, alternative
@@ -23,10 +26,11 @@ from pagd.figures.generative.captions import CAPTIONS
 from pagd.figures.groups import read_entries
 from pagd.figures.load import Path3D
 from pagd.figures.page import Study, write_page
+from pagd.figures.page.explorer import explorer_data
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, comparison_table
+from pagd.figures.page.libraries import datatables, plotly
 from pagd.figures.page.rows import rows_of
 from pagd.figures.page.screening import answer_of
-from pagd.figures.page.table import results_table
 from pagd.figures.surface import skin_of
 from pagd.record import write_record
 from pagd.tables import PERFORMANCE, write_rows
@@ -131,24 +135,26 @@ def test_page_needs_no_other_file(page):
     scripts = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
     assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", scripts)
     assert "@import" not in scripts
-    assert "url(" not in scripts
+    assert not re.search(r"url\((?!data:)", scripts)
     assert text.count("data:image/webp;base64,") == 1
     assert TOGETHER["angles"] in text
 
 
 def test_page_tells_of_every_design(page):
     text = page.read_text(encoding="utf-8")
-    rows = re.findall(r"<tr><th><a.*?</tr>", text)
-    assert len(rows) == 3
-    assert "34.4" in rows[0]
-    assert "−5.2" in rows[1]
-    assert "invalid geometry" in rows[2]
+    data = data_of(text)["explorer"]
+    place = {column["key"]: i for i, column in enumerate(data["columns"])}
+    assert len(data["rows"]) == 3
+    assert data["rows"][0][place["bending_deg"]] == pytest.approx(34.4, abs=0.05)
+    assert data["rows"][1][place["tip_z_mm"]] == -5.25
+    assert data["rows"][2][place["status"]] == "invalid geometry"
     assert "t_ab = 9 is &lt;too thick&gt; &amp; leaves no cavity." in text
     assert [d["name"] for d in data_of(text)["designs"]] == ["whole", "half", "failed"]
     assert text.count('class="shape-data"') == 2
     assert text.count('" open><summary>') == 3
     # What there is nothing of has no section.
-    expected = ["What was run", "Performance", "Trajectories, angles and forces", "Each design"]
+    expected = ["What was run", "Explorer", "Performance", "Trajectories, angles and forces"]
+    expected += ["Each design"]
     assert titles_of(text) == expected
     assert text.count("Blocked force (lower edge of the tip held): 0.690 N at 30 kPa.") == 2
     assert "Contact was off" not in text
@@ -163,7 +169,8 @@ def test_page_tells_whether_chambers_could_touch(designs, tmp_path, contact, wor
     (tmp_path / "d" / "solve").mkdir(parents=True)
     write_record(made, tmp_path / "d" / "solve")
     write_page([tmp_path / "d"], tmp_path / "index.html")
-    text = re.sub("<.*?>", " ", (tmp_path / "index.html").read_text(encoding="utf-8")[:20000])
+    whole = (tmp_path / "index.html").read_text(encoding="utf-8")
+    text = re.sub("<.*?>", " ", whole[whole.index("<main>") :][:20000])
     assert re.search(rf"contact between chambers\s+{word}\b", text)
     assert re.search(r"pressure up to\s+50 kPa", text)
 
@@ -184,46 +191,62 @@ def cells(row):
     return [re.sub("<.*?>", "", cell) for cell in found]
 
 
-def test_table_shows_what_is_known_and_sorts_by_numbers():
+def explored(rows, study=None):
+    """What the explorer shows of some rows: a dictionary a row, by the headings."""
+    data = explorer_data(rows, study or Study())
+    headings = [column["heading"] for column in data["columns"]]
+    return [dict(zip(headings, row, strict=True)) for row in data["rows"]], data
+
+
+def test_the_explorer_has_a_column_for_whatever_is_known():
     rows = [
         {"design_id": "a", "link": True, "status": "ok", "origin": "own", "bending_deg": -1234.56},
         {"design_id": "b", "link": False, "status": "mesh_failed", "novelty": 0.5},
     ]
-    text = results_table(rows)
-    head, first, second = re.findall(r"<tr>.*?</tr>", text, re.DOTALL)
-    assert cells(head) == ["design", "status", "origin", "novelty", "bending°"]
-    assert cells(first) == ["a", "ok", "own", "–", "−1,234.6"]
-    assert cells(second) == ["b", "mesh failed", "–", "0.50", "–"]
-    assert 'data-order="-1234.56"' in first
-    assert 'href="#design-a"' in first
-    assert "href" not in second
+    (first, second), data = explored(rows)
+    known = {"design": "a", "status": "ok", "analysis": "full", "origin": "own"}
+    assert first == known | {"novelty": None, "bending": -1234.56}
+    assert second["status"] == "mesh failed"
+    assert second["novelty"] == 0.5
+    assert data["links"] == [0]
+    units = {column["heading"]: column["unit"] for column in data["columns"]}
+    assert units["bending"] == "°"
 
 
-def test_table_has_force_contact_and_penetration_with_their_units():
-    known = {"blocked_force_N": 1.234, "first_contact_pressure_kPa": 31.26}
-    rows = [
-        {
-            "design_id": "a",
-            "link": False,
-            "status": "ok",
-            **known,
-            "deepest_penetration_mm": 0.0123,
-        },
-        {"design_id": "b", "link": False, "status": "ok", "contact": True},
-        {"design_id": "c", "link": False, "status": "ok", "contact": False},
+def test_the_explorer_keeps_no_round_off():
+    (first,), _ = explored([{"design_id": "a", "status": "ok", "twist_deg": -1e-14}])
+    assert str(first["twist"]) == "0.0"
+    (first,), _ = explored([{"design_id": "a", "status": "ok", "energy_balance": 0.01234567}])
+    assert first["energy balance"] == 1.235
+
+
+def test_the_explorer_has_designs_by_a_chamber_once_with_their_novelty(tmp_path):
+    names = [column.name for column in PERFORMANCE]
+    for folder, ids in (("generated", ("g1", "g2")), ("training", ("d1",))):
+        rows = [{"design_id": one, "status": "ok", "bending_deg": 10.0} for one in ids]
+        path = tmp_path / folder / "performance.parquet"
+        path.parent.mkdir()
+        write_rows(path, PERFORMANCE, [dict.fromkeys(names) | row for row in rows])
+    study = Study(screened=tmp_path / "generated", screened_training=tmp_path / "training")
+    simulated = [{"design_id": "g2", "status": "ok", "bending_deg": 11.0, "link": True}]
+    found, _ = explored(simulated, study)
+    assert [(row["design"], row["analysis"]) for row in found] == [
+        ("g2", "full"),
+        ("g1", "one chamber"),
+        ("d1", "one chamber"),
     ]
-    head, first, second, third = re.findall(r"<tr>.*?</tr>", results_table(rows), re.DOTALL)
-    assert cells(head)[2:] == ["blocked forceN", "first contactkPa", "penetrationmm"]
-    assert cells(first)[2:] == ["1.234", "31.3", "0.012"]
-    assert cells(second)[2:] == ["–", "–", "–"]
-    assert cells(third)[2:] == ["–", "off", "off"]
-    assert 'data-order="31.26"' in first
+    frame = frame_of([TABLE2_MIXED], ["g1"], ["generated"])
+    drawn = tmp_path / "drawn" / "designs.parquet"
+    drawn.parent.mkdir()
+    frame.assign(novelty=2.5).to_parquet(drawn)
+    found, _ = explored(simulated, replace(study, generated=drawn.parent))
+    assert {row["design"]: row["novelty"] for row in found} == {"g2": None, "g1": 2.5, "d1": None}
 
 
-@pytest.mark.parametrize(("count", "box"), [(20, "scroll"), (21, "scroll tall")])
-def test_only_long_tables_scroll_in_a_box(count, box):
-    row = {"design_id": "a", "link": False, "status": "ok", "bending_deg": 1.0}
-    assert f'<div class="{box}"><table' in results_table([row] * count)
+def test_libraries_that_stand_in_the_page_end_no_script():
+    for script in (plotly(), datatables()):
+        assert "</script" not in script
+    assert "window.DataTable=" in datatables()
 
 
 def test_rows_are_those_of_the_summary_with_what_the_records_add(tmp_path):
@@ -407,6 +430,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
     text = whole_page.read_text(encoding="utf-8")
     assert titles_of(text) == [
         "What was run",
+        "Explorer",
         "Data set and embedding",
         "Generator and modes",
         "Novelty and diversity",
@@ -440,7 +464,7 @@ def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
     assert sorted(shown) == sorted(CAPTIONS)
     assert text.count("data:image/webp") == len(CAPTIONS)
     assert shown[0] == "embedding"
-    assert text.index("How hull") < text.index("<h2>6. Performance") < text.index("How feasibility")
+    assert text.index("How hull") < text.index("<h2>7. Performance") < text.index("How feasibility")
 
 
 def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
@@ -456,10 +480,9 @@ def test_many_cards_are_closed_and_designs_without_a_folder_have_none(whole_page
     assert re.findall(r'<details class="card" id="design-(\w+)">', text) == [
         f"d{i}" for i in range(5)
     ]
-    linked = re.findall(r'<a href="#design-(\w+)">', text)
-    assert linked == [f"d{i}" for i in range(5)]
     data = data_of(text)
-    assert len(data["points"]) == 7
+    assert data["explorer"]["links"] == [0, 1, 2, 3, 4]
+    assert len(data["explorer"]["rows"]) == 7
     assert data["groups"] == ["twisting", "mixed"]
 
 
@@ -513,20 +536,10 @@ def test_page_draws_without_errors_in_a_browser(page, tmp_path):
 
 
 _PROBE = """
-const names = () => [...document.querySelectorAll("#results tbody tr:not([hidden]) th")]
-  .map((cell) => cell.textContent).join(" ");
-const click = (text) => [...document.querySelectorAll("#results thead button")]
-  .find((button) => button.textContent.startsWith(text)).click();
 const keys = () => [...document.querySelectorAll("#key li")].map((e) => e.textContent).join(" ");
 const found = { modes: keys() };
-click("novelty"); found.rising = names();
-click("novelty"); found.falling = names();
-const input = document.querySelector("input[type=search]");
-input.value = "D3 generated"; input.dispatchEvent(new Event("input"));
-found.filtered = names();
-found.count = document.querySelector("[data-count]").textContent;
 document.querySelectorAll("#groups button")[1].click(); found.twisting = keys();
-const box = document.querySelector("#results").parentElement;
+const box = document.querySelector("#diversity .scroll");
 found.more = [90, 0, 5000].map((scrolled) => {
   box.style.width = "100px"; box.scrollLeft = scrolled; fade(box);
   return box.classList.contains("more");
@@ -537,12 +550,9 @@ list.id = "found"; list.textContent = JSON.stringify(found); document.body.appen
 
 
 @needs_browser
-def test_table_sorts_and_filters_and_paths_are_shown_by_mode(whole_page, tmp_path):
+def test_paths_are_shown_by_mode_and_wide_tables_fade(whole_page, tmp_path):
     document = opened(whole_page, tmp_path, _PROBE)
     found = json.loads(html.unescape(re.search(r'id="found">(.*?)</pre>', document).group(1)))
-    assert found["rising"] == "d0 d1 d2 d3 d4 d5 d6"
-    assert found["falling"] == "d6 d5 d4 d3 d2 d1 d0"
-    assert (found["filtered"], found["count"]) == ("d3", "1 of 7 designs")
     assert (found["modes"], found["twisting"]) == ("twisting mixed", "d1 d2 d3 d4")
     # There is more to the right, until the table is scrolled to its end.
     assert found["more"] == [True, True, False]

@@ -84,6 +84,7 @@ SCREENING = GENERATIVE and SCREENED["training"] > 0 and refusal_of_cells(CONFIG[
 if SCREENING:
     STUDY |= {
         "screened": "results/screening/generated",
+        "screened_training": "results/screening/training",
         "fronts": "results/summary/fronts.json",
         "screening_pictures": "results/figures/screening",
     }

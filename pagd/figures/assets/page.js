@@ -21,9 +21,11 @@ function followLinks() {
   follow();
 }
 
-prepareTables();
-drawClouds();
+followDark();
+prepareBoxes();
+prepareExplorer();
 drawPaths();
 drawShapes();
 followLinks();
+dark.addEventListener("change", followDark);
 dark.addEventListener("change", () => redraws.forEach((draw) => draw()));

@@ -26,7 +26,7 @@ class Study:
     performance: Parquet table of all simulated designs, with their novelty.
     pictures: folder with NAME.png and captions.json, of data set, generator and diversity.
     simulated, screening_pictures: the same of simulated designs, and of screened ones.
-    screened: folder of the screening of generated designs.
+    screened, screened_training: folders of the screening of generated and of training designs.
     fronts: JSON file of the comparison of their Pareto fronts with those of training designs.
     """
 
@@ -39,6 +39,7 @@ class Study:
     pictures: Path | None = None
     simulated: Path | None = None
     screened: Path | None = None
+    screened_training: Path | None = None
     fronts: Path | None = None
     screening_pictures: Path | None = None
 
