@@ -32,6 +32,7 @@ screen: .venv/pagd-installed ## Do all of it with all training designs, 11,000 o
 # One solver thread a test process: the processes already fill the cores.
 test: lint ## Check the style, then run all tests.
 	@setup/system.sh slurm-packages.txt || echo "Without Slurm, its test is left out."
+	@setup/system.sh browser-packages.txt || echo "Without Chromium, the tests of the page are left out."
 	OMP_NUM_THREADS=1 MKL_NUM_THREADS=1 pytest --hypothesis-profile ci --numprocesses $(CORES) --dist loadscope
 
 verify: .venv/pagd-installed ## Compute every row of the verification: docs/verification.md; half an hour at most.

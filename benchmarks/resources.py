@@ -21,8 +21,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from performance.origin import origin_lines
-from performance.page import must_have_section, publish, table
+from performance.page import must_have_section, publish, table, wrapped
 
 from pagd.errors import InputError
 from pagd.record import RECORD_NAME, read_record
@@ -37,8 +36,9 @@ _STAGES = {
     "figures": ("figures",),
 }
 _PART = "screen_part"
-#: Rules whose measurements have another name than they.
-_NAMES = {"selection": "select", "summary": "summary_tables"}
+_SCREENED = ("generated", "training")
+#: Rules whose measurements have another name than they: a file, or all of a folder.
+_NAMES = {"selection": "select", "summary": "summary_tables", "screening": "screened"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,12 @@ def taken(folders: Sequence[Path]) -> dict[str, list[Job]]:
             found.setdefault(rule, []).extend(job for job in jobs if job)
         parts = sorted((folder / "screening" / "parts").glob("*"))
         found.setdefault(_PART, []).extend(job for part in parts if (job := _by_records([part])))
-        for file in sorted((folder / "benchmarks").glob("*.tsv")):
-            found.setdefault(_NAMES.get(file.stem, file.stem), []).extend(_by_snakemake(file))
+        measured = folder / "benchmarks"
+        files = {file: file.stem for file in sorted(measured.glob("*.tsv"))}
+        files |= {measured / "screening" / f"{t}.tsv": "screening" for t in _SCREENED}
+        for file, name in files.items():
+            if file.is_file():
+                found.setdefault(_NAMES.get(name, name), []).extend(_by_snakemake(file))
     return found
 
 
@@ -123,6 +127,25 @@ def lines_of(found: Mapping[str, Sequence[Job]], rules: Mapping[str, Asked]) -> 
     return table([*headings, "minutes, median", "longest", "asked for"], rows)
 
 
+def made_by(folders: Sequence[Path]) -> str:
+    """Return on what machines and by which versions the analyses of runs were made."""
+    machines: dict[str, None] = {}
+    versions: dict[str, dict[str, None]] = {}
+    for folder in folders:
+        paths = [*(folder / "designs").glob("*/solve"), *(folder / "screening/parts").glob("*")]
+        for path in sorted(one for one in paths if (one / RECORD_NAME).is_file()):
+            record = read_record(path)
+            machine = record.machine
+            if machine:
+                told = f"{machine['processor']}, {machine['cores']} cores"
+                machines[f"{told}, {machine['memory_GB']} GB, {machine['system']}"] = None
+            for name, version in record.versions.items():
+                if version is not None and name != "stage":
+                    versions.setdefault(name, {})[str(version)] = None
+    told = ", ".join(f"{name} {'/'.join(some)}" for name, some in sorted(versions.items()))
+    return f"{' and '.join(machines) or 'Machines of which records tell nothing'}. {told}."
+
+
 def main() -> int:
     """Print the table, or write it to a page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
@@ -137,9 +160,10 @@ def main() -> int:
     if not any(found.values()):
         parser.error(f"{options.results[0]}: no job of a run is there.")
     text = lines_of(found, asked())
-    command = "python benchmarks/resources.py results"
+    command = f"python benchmarks/resources.py {' '.join(map(str, options.results))}"
     command += f" --page {options.page}" if options.page else ""
-    publish(options.page, _SECTION, f"{origin_lines(command)}\n\n{text}")
+    told = wrapped(made_by(options.results))
+    publish(options.page, _SECTION, f"`{command}`\n\n{told}\n\n{text}")
     return 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib.metadata
 import json
@@ -99,7 +100,7 @@ def read_record(folder: Path) -> Record:
     Raises
     ------
     InputError
-        If there is none, or it is not a record.
+        If there is none, it is not a record, or its configuration is not what its hash says.
     """
     path = folder / RECORD_NAME
     must_exist(path)
@@ -109,7 +110,9 @@ def read_record(folder: Path) -> Record:
         raise InputError(f"{path}: not a readable record ({error}).") from error
     check(content, "record", f"{path}: not a record")
     del content["schema"]
-    content.pop(_HASH, None)
+    told = content.pop(_HASH, None)
+    if told is not None and told != configuration_hash(content["configuration"]):
+        raise InputError(f"{path}: its configuration is not the one it was made by (SHA-256).")
     return Record(**{**content, "status": Status(content["status"])})
 
 
@@ -124,7 +127,7 @@ def stage_folder(path: Path) -> AbstractContextManager[Path]:
 def versions(
     stage: int, libraries: Mapping[str, str | None] | tuple[str, ...] = ()
 ) -> dict[str, str | int | None]:
-    """Return the versions for a record.
+    """Return the versions for a record; ``sources`` tells one state of pagd's code from another.
 
     Parameters
     ----------
@@ -136,6 +139,7 @@ def versions(
     found = libraries if isinstance(libraries, Mapping) else {n: _installed(n) for n in libraries}
     return {
         "pagd": __version__,
+        "sources": _sources(),
         "stage": stage,
         "python": platform.python_version(),
         **found,
@@ -201,6 +205,17 @@ def _cpu_seconds() -> float:
     own = resource.getrusage(resource.RUSAGE_SELF)
     child = resource.getrusage(resource.RUSAGE_CHILDREN)
     return own.ru_utime + own.ru_stime + child.ru_utime + child.ru_stime
+
+
+@functools.cache
+def _sources() -> str:
+    """Sixteen digits of the SHA-256 of the package's own files, without those Python adds."""
+    root, digest = Path(__file__).parent, hashlib.sha256()
+    for path in sorted(root.rglob("*")):
+        if path.is_file() and "__pycache__" not in path.parts:
+            digest.update(path.relative_to(root).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _installed(package: str) -> str | None:

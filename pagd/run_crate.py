@@ -20,8 +20,10 @@ import snakemake
 from rocrate.rocrate import ROCrate
 
 from pagd import __version__
+from pagd.audit import OF_DESIGN, OF_STUDY
 from pagd.files import must_exist, replaced_folder, write_text
 from pagd.record import RECORD_NAME, Record, configuration_hash, read_record
+from pagd.tables import read_rows
 
 __all__ = ["METADATA", "PROVENANCE", "write_run_crate"]
 
@@ -31,6 +33,7 @@ PROVENANCE: Final = "provenance"
 
 _CONFIGURATION: Final = "configuration.json"
 _README: Final = "README.md"
+_PERFORMANCE: Final = "summary/performance.parquet"
 _PROFILES: Final = {
     "https://w3id.org/ro/wfrun/process/0.5": ("Process Run Crate", "0.5"),
     "https://w3id.org/ro/wfrun/workflow/0.5": ("Workflow Run Crate", "0.5"),
@@ -51,7 +54,7 @@ _ENCODINGS: Final = {
 #: What a run leaves, by what it is; what is not there is left out.
 _RESULTS: Final = {
     "designs": "a folder a design: geometry, mesh, analysis and metrics, each with its record",
-    "summary/performance.parquet": "performance of the simulated designs, whatever became of them",
+    _PERFORMANCE: "performance of the simulated designs, whatever became of them",
     "summary/summary.csv": "the same for people",
     "summary/by_pressure.parquet": "performance at every recorded pressure",
     "summary/trajectories.parquet": "trajectories of the simulated designs",
@@ -69,7 +72,7 @@ _RESULTS: Final = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _MadeBy:
-    """When a run was at work, on what kinds of machines, with which versions, and what came."""
+    """When the oldest of the results was begun and all were there, by what, and what they are."""
 
     begun: datetime
     ended: datetime
@@ -125,8 +128,8 @@ def _named(tables: Sequence[Path]) -> dict[str, Path]:
     """Names of the files in one folder: their own, with a number before it where two have one."""
     found: dict[str, Path] = {}
     for table in dict.fromkeys(table.resolve() for table in tables):
-        name = table.name if table.name not in found else f"{len(found)}-{table.name}"
-        found[name] = table
+        numbered = (f"{number}-{table.name}" for number in range(1, len(tables) + 1))
+        found[next(one for one in (table.name, *numbered) if one not in found)] = table
     return found
 
 
@@ -214,25 +217,30 @@ def _add_action(
 
 
 def _made_by(results: Path) -> _MadeBy:
-    """What the records of all stages tell of the run."""
-    found = list(_records(results))
-    written = [path.stat().st_mtime for path, _ in found] or [time.time()]
-    spent = [record.timings_s["wall"] for _, record in found] or [0.0]
+    """What the table of the designs and the records of the stages tell of the run."""
+    table = results / _PERFORMANCE
+    rows = read_rows(table) if table.is_file() else []
+    found = list(_records(results, [str(row["design_id"]) for row in rows]))
+    begun = [path.stat().st_mtime - record.timings_s["wall"] for path, record in found]
     machines = {configuration_hash(r.machine): r.machine for _, r in found if r.machine}
     return _MadeBy(
-        begun=_moment(min(when - took for when, took in zip(written, spent, strict=True))),
-        ended=_moment(max(written)),
+        begun=_moment(min(begun, default=time.time())),
+        ended=_moment(time.time()),
         machines=[_told(one) for one in machines.values()] or ["not known"],
-        statuses=Counter(r.status.value for path, r in found if path.parent.name == "metrics"),
+        statuses=Counter(str(row["status"]) for row in rows),
         versions=_versions(record for _, record in found),
     )
 
 
-def _records(results: Path) -> Iterator[tuple[Path, Record]]:
-    """Records of all stages, with their files."""
-    for path in sorted(results.glob(f"**/{RECORD_NAME}")):
-        if not any(part.startswith(".") for part in path.relative_to(results).parts):
-            yield path, read_record(path.parent)
+def _records(results: Path, designs: Sequence[str]) -> Iterator[tuple[Path, Record]]:
+    """Records of the stages that the results of a run are made of, with their files."""
+    folders = [results / name for name in OF_STUDY]
+    folders += [results / "screening" / name for name in ("training", "generated")]
+    folders += [results / "designs" / name / stage for name in designs for stage in OF_DESIGN]
+    for folder in folders:
+        path = folder / RECORD_NAME
+        if path.is_file():
+            yield path, read_record(folder)
 
 
 def _versions(records: Iterable[Record]) -> dict[str, str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from datetime import date, datetime
+from pathlib import Path
 from typing import Final
 
 import mlcroissant as mlc
@@ -16,9 +17,11 @@ from pagd import __version__
 from pagd.archive.card import DESCRIPTION, NAME
 from pagd.archive.splits import SPLITS
 from pagd.archive.tables import TABLES, Archived
+from pagd.errors import InputError
+from pagd.files import must_exist
 from pagd.tables import Column
 
-__all__ = ["CREATOR", "CROISSANT", "KEYWORDS", "croissant"]
+__all__ = ["CREATOR", "CROISSANT", "KEYWORDS", "croissant", "version_of", "version_on"]
 
 CROISSANT: Final = "croissant.json"
 
@@ -65,7 +68,7 @@ def croissant(digests: Mapping[str, str], published: date) -> str:
     metadata = mlc.Metadata(
         name=NAME,
         description=DESCRIPTION,
-        version=__version__,
+        version=version_on(published),
         license=[_LICENCE],
         creators=[mlc.Organization(name=CREATOR)],
         cite_as=_CITATION,
@@ -76,6 +79,27 @@ def croissant(digests: Mapping[str, str], published: date) -> str:
     )
     text = json.dumps(metadata.to_json(), indent=2, ensure_ascii=False, default=str)
     return text + "\n"
+
+
+def version_on(published: date) -> str:
+    """Return the version of a data set: the day that it was published, as 2026.1.31."""
+    return f"{published.year}.{published.month}.{published.day}"
+
+
+def version_of(archive: Path) -> str:
+    """Return the version that a data set tells of itself.
+
+    Raises
+    ------
+    InputError
+        If it has no metadata.
+    """
+    path = archive / CROISSANT
+    must_exist(path)
+    try:
+        return str(json.loads(path.read_text(encoding="utf-8"))["version"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: tells no version ({error}).") from None
 
 
 def _records(name: str, split: str, table: Archived) -> mlc.RecordSet:

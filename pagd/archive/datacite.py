@@ -1,7 +1,7 @@
 """What a repository that gives out DOIs asks of a data set, as DataCite names it.
 
 DataCite Metadata Schema 4.5, https://schema.datacite.org/meta/kernel-4.5/. The DOI itself is for
-the repository to add.
+the repository to add, which is the publisher then.
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from collections.abc import Mapping
 from datetime import date
 from typing import Final
 
-from pagd import __version__
 from pagd.archive.card import DESCRIPTION, NAME
-from pagd.archive.croissant import CREATOR, KEYWORDS
+from pagd.archive.croissant import CREATOR, KEYWORDS, version_on
 
 __all__ = ["DATACITE", "datacite"]
 
 DATACITE: Final = "datacite.json"
+_PAPER: Final = "Generative design of multimodal Soft Pneumatic Actuators"
 
 
 def datacite(published: date, sizes: Mapping[str, int]) -> str:
@@ -28,7 +28,7 @@ def datacite(published: date, sizes: Mapping[str, int]) -> str:
     published
         Date of publication.
     sizes
-        Bytes of the files of the tables, by path.
+        Bytes of the files, by path.
     """
     content = {
         "creators": [{"name": CREATOR, "nameType": "Organizational"}],
@@ -39,7 +39,7 @@ def datacite(published: date, sizes: Mapping[str, int]) -> str:
         "types": {"resourceTypeGeneral": "Dataset", "resourceType": "Finite-element analyses"},
         "subjects": [{"subject": word} for word in KEYWORDS],
         "language": "en",
-        "version": __version__,
+        "version": version_on(published),
         "formats": ["application/x-parquet"],
         "sizes": [f"{sum(sizes.values())} bytes", f"{len(sizes)} files"],
         "descriptions": [{"description": DESCRIPTION, "descriptionType": "Abstract"}],
@@ -49,6 +49,14 @@ def datacite(published: date, sizes: Mapping[str, int]) -> str:
                 "rightsUri": "https://spdx.org/licenses/MIT.html",
                 "rightsIdentifier": "MIT",
                 "rightsIdentifierScheme": "SPDX",
+            }
+        ],
+        "relatedItems": [
+            {
+                "titles": [{"title": _PAPER}],
+                "creators": [{"name": name} for name in ("Ghosh", "Roy")],
+                "relationType": "IsDerivedFrom",
+                "relatedItemType": "JournalArticle",
             }
         ],
         "schemaVersion": "http://datacite.org/schema/kernel-4",

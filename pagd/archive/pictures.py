@@ -9,11 +9,14 @@ from typing import Final
 from pagd.figures.deformed import draw_deformed
 from pagd.figures.gallery import draw_gallery
 from pagd.figures.load import has_states
+from pagd.inventory import read_sound_record
 
 __all__ = ["GALLERY", "draw_sample", "sample_of"]
 
 #: Picture of the whole sample, in the data set.
 GALLERY: Final = "pictures/sample.png"
+# Stages whose files are drawn.
+_DRAWN: Final = ("mesh", "solve")
 
 
 def sample_of(folders: Mapping[str, Path], count: int) -> dict[str, Path]:
@@ -33,9 +36,18 @@ def sample_of(folders: Mapping[str, Path], count: int) -> dict[str, Path]:
 
 
 def draw_sample(sample: Mapping[str, Path], archive: Path) -> None:
-    """Draw the designs of a sample together, and the deformed shapes of each by its id."""
+    """Draw the designs of a sample together, and the deformed shapes of each by its id.
+
+    Raises
+    ------
+    InputError
+        If a file that is drawn is not what its record says.
+    """
     if not sample:
         return
+    for folder in sample.values():
+        for stage in _DRAWN:
+            read_sound_record(folder / stage)
     (archive / GALLERY).parent.mkdir()
     draw_gallery(list(sample.values()), archive / GALLERY)
     for identity, folder in sample.items():

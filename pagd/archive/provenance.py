@@ -10,7 +10,8 @@ from pagd.record import Record, configuration_hash, read_record
 
 __all__ = ["PROVENANCE", "Provenance", "key_of", "of_screening", "of_simulation"]
 
-#: ``configuration``, its SHA-256, ``versions`` by stage, and the ``machines`` that were at work.
+#: ``configuration`` by stage, its SHA-256, ``versions`` by stage, each that was at work, and
+#: ``machines``. Of a screening, whose jobs may be spread over several, all are told.
 Provenance = dict[str, Any]
 
 #: File of what made the analyses, by the keys that the table ``performance`` has.
@@ -35,9 +36,10 @@ def of_screening(folder: Path) -> Provenance:
     """
     record = read_record(folder)
     made_by = record.figures.get("made_by") or [_made_by(record)]
+    configuration = {"screening": record.configuration}
     return {
-        "configuration": record.configuration,
-        "configuration_sha256": configuration_hash(record.configuration),
+        "configuration": configuration,
+        "configuration_sha256": configuration_hash(configuration),
         "versions": {"screening": _distinct(one["versions"] for one in made_by)},
         "machines": _distinct(one["machine"] for one in made_by),
     }
@@ -52,11 +54,11 @@ def of_simulation(folder: Path) -> Provenance:
         If a stage has no record.
     """
     records = {stage: read_record(folder / stage) for stage in _STAGES}
-    configuration: dict[str, Any] = {}
-    for record in records.values():
-        configuration |= record.configuration
     # What is drawn is not what it is drawn by.
-    configuration.pop("design", None)
+    configuration = {
+        stage: {key: value for key, value in record.configuration.items() if key != "design"}
+        for stage, record in records.items()
+    }
     return {
         "configuration": configuration,
         "configuration_sha256": configuration_hash(configuration),

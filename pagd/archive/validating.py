@@ -14,6 +14,7 @@ from pagd.archive.croissant import CROISSANT
 from pagd.archive.provenance import PROVENANCE, key_of
 from pagd.archive.splits import SPLITS
 from pagd.archive.tables import TABLES
+from pagd.errors import InputError
 from pagd.files import must_exist
 
 __all__ = ["faults_of_metadata", "faults_of_provenance"]
@@ -60,10 +61,12 @@ def faults_of_provenance(folder: Path, performance: pd.DataFrame) -> list[str]:
     Raises
     ------
     InputError
-        If it has no file of its provenance.
+        If it has no file of its provenance, or its tables do not name any.
     """
     path = folder / PROVENANCE
     must_exist(path)
+    if "provenance" not in performance:
+        raise InputError(f"{folder}: made by an older pagd, which told no provenance.")
     told = json.loads(path.read_text(encoding="utf-8"))
     wrong = [key for key, made_by in told.items() if key_of(made_by) != key]
     faults = [f"{key} is not the hash of what it names." for key in wrong]

@@ -21,7 +21,7 @@ from pagd.archive.pictures import draw_sample, sample_of
 from pagd.archive.provenance import PROVENANCE
 from pagd.archive.reading import read_tables
 from pagd.archive.splits import SPLITS, split_of
-from pagd.files import replaced_folder
+from pagd.files import must_exist, replaced_folder
 from pagd.inventory import sha256_of
 
 __all__ = ["CHECKSUMS", "REPORT", "differing", "report_of", "write_archive"]
@@ -72,7 +72,6 @@ def write_archive(
         made_by = json.dumps(found.provenance, indent=2, ensure_ascii=False)
         texts = {
             CROISSANT: croissant(_digests(tables), published),
-            DATACITE: datacite(published, {name: p.stat().st_size for name, p in tables.items()}),
             PROVENANCE: f"{made_by}\n",
             CARD: card(frames, origin, list(sample)),
             DICTIONARY: dictionary(),
@@ -81,6 +80,8 @@ def write_archive(
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
         draw_sample(sample, folder)
+        sizes = {name: path.stat().st_size for name, path in _files(folder).items()}
+        (folder / DATACITE).write_text(datacite(published, sizes), encoding="utf-8")
         lines = [f"{digest}  {name}" for name, digest in _digests(_files(folder)).items()]
         (folder / CHECKSUMS).write_text("\n".join([*lines, ""]), encoding="utf-8")
     return findings
@@ -117,11 +118,17 @@ def _digests(files: Mapping[str, Path]) -> dict[str, str]:
 
 
 def differing(folder: Path) -> list[str]:
-    """Return the files of a data set that are missing, or not what their checksum says."""
-    lines = (folder / CHECKSUMS).read_text(encoding="utf-8").splitlines()
+    """Return the files of a data set that are missing, unknown, or not what their checksum says.
+
+    Raises
+    ------
+    InputError
+        If it has no checksums: it is no data set.
+    """
+    path = folder / CHECKSUMS
+    must_exist(path)
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     told = {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
-    return [
-        name
-        for name, digest in told.items()
-        if not (folder / name).is_file() or sha256_of(folder / name) != digest
-    ]
+    there = _files(folder)
+    wrong = [n for n, digest in told.items() if n not in there or sha256_of(there[n]) != digest]
+    return wrong + [name for name in there if name not in told and name != CHECKSUMS]

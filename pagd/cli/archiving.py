@@ -16,13 +16,19 @@ if TYPE_CHECKING:
 __all__ = ["archive", "check_archive"]
 
 
+# The picture of all of them together grows with their number.
+_MOST_PICTURES = 100
+
+
 def archive(options: Namespace) -> int:
     """Write the data set that a run leaves; 1 if it breaks a rule."""
-    from pagd.archive.packing import pack
+    from pagd.archive.packing import check_target, pack
     from pagd.archive.writing import write_archive
 
-    if options.pictures < 0:
-        raise InputError(f"--pictures = {options.pictures} must be 0 or more.")
+    if not 0 <= options.pictures <= _MOST_PICTURES:
+        raise InputError(f"--pictures = {options.pictures} must be 0 to {_MOST_PICTURES}.")
+    if options.zip is not None:
+        check_target(options.zip, options.out)
     found = write_archive(
         options.results, options.out, options.more, _date(options.date), options.pictures
     )
@@ -48,6 +54,7 @@ def check_archive(options: Namespace) -> int:
 
 def _checked(folder: Path, told: Path) -> int:
     from pagd.archive.checks import check_tables
+    from pagd.archive.provenance import PROVENANCE
     from pagd.archive.reading import read_tables
     from pagd.archive.validating import faults_of_metadata, faults_of_provenance
     from pagd.archive.writing import differing
@@ -55,6 +62,9 @@ def _checked(folder: Path, told: Path) -> int:
     changed = differing(folder)
     for name in changed:
         print(f"{name} is missing, or not what its checksum says.")
+    if any(name == PROVENANCE or name.startswith("data/") for name in changed):
+        print(f"{told} is damaged: what it says is not looked at.")
+        return 1
     faults = faults_of_metadata(folder)
     for fault in faults:
         print(f"croissant.json: {fault}")

@@ -12,7 +12,7 @@ from pagd.mesh.quality import node_jacobians
 from pagd.mesh.topology import boundary_faces, components, open_edges, row_numbers, shared_faces
 from pagd.mesh.types import FloatArray, IntArray, Mesh, corner_volumes
 
-__all__ = ["REQUIRED", "SURFACES", "check_actuator", "check_volumes", "require_names"]
+__all__ = ["EXTENT_MM", "REQUIRED", "SURFACES", "check_actuator", "check_volumes", "require_names"]
 
 #: The surface names pagd knows.
 SURFACES = ("fixed", "cavity", "paper", "tip", "outer", "symmetry")
@@ -21,7 +21,8 @@ REQUIRED = ("fixed", "cavity")
 #: Planes may be off by this share of the mesh's extent.
 _FLATNESS = 1e-6
 #: Lengths are in mm: an actuator this short (or long) was surely drawn in another unit.
-_EXTENT_MM = (1.0, 1e5)
+#: Lengths in mm that an actuator may have: others are in another unit.
+EXTENT_MM = (1.0, 1e5)
 
 
 def check_actuator(mesh: Mesh) -> None:
@@ -81,9 +82,9 @@ def _check_connected(mesh: Mesh) -> None:
 
 def _check_extent(points: FloatArray) -> None:
     extent = float(np.ptp(points, axis=0).max())
-    if not _EXTENT_MM[0] <= extent <= _EXTENT_MM[1]:
+    if not EXTENT_MM[0] <= extent <= EXTENT_MM[1]:
         raise InputError(
-            f"The mesh is {extent:g} mm long, expected {_EXTENT_MM[0]:g} to {_EXTENT_MM[1]:g}; "
+            f"The mesh is {extent:g} mm long, expected {EXTENT_MM[0]:g} to {EXTENT_MM[1]:g}; "
             "coordinates must be in mm."
         )
 

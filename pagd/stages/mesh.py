@@ -16,6 +16,7 @@ from pagd.design import Channel
 from pagd.errors import InputError, StageFailure, Status
 from pagd.inventory import read_sound_record
 from pagd.mesh.chamber_row import chamber_row
+from pagd.mesh.checks import EXTENT_MM
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
 from pagd.mesh.run import MeshGate, mesh_with_limits
@@ -113,13 +114,14 @@ def run_own(own: OwnSurfaces, out: Path, config: Mapping[str, Any]) -> Record:
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         pair = SurfacePair.from_stl(own.body, own.base, own.half)
+        where = f"body {own.body} and base {own.base}"
         try:
+            _check_length(pair)
             _check_hollow(join(pair))
         except StageFailure as failure:
-            where = f"body {own.body} and base {own.base}"
             raise InputError(f"{where}: {failure.reason}") from None
         except InputError as error:
-            raise InputError(f"{own.body}: {error}") from None
+            raise InputError(f"{where}: {error}") from None
         _mesh(pair, None, folder, outcome, config["mesh"])
 
     return run_stage(
@@ -146,6 +148,17 @@ def identity(mesh: Mesh) -> dict[str, Any]:
 def name_of(file: Path) -> str:
     """Return a name for a design from that of a file."""
     return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "own"
+
+
+def _check_length(pair: SurfacePair) -> None:
+    """Refuse surfaces that are in another unit than mm."""
+    points = np.vstack((pair.body.points, pair.base.points))
+    length, (shortest, longest) = float(np.ptp(points, axis=0).max()), EXTENT_MM
+    if not shortest <= length <= longest:
+        raise InputError(
+            f"they are {length:.6g} mm long, expected {shortest:g} to {longest:g}; coordinates "
+            "must be in mm."
+        )
 
 
 def _check_hollow(solid: Complex) -> None:

@@ -70,10 +70,10 @@ MESHES: dict[str, tuple[Callable[[Path], object], str]] = {
 
 #: What is in a cavity looks inwards.
 HOLLOW = [*cube(0, 0, 10), *(triangle[::-1] for triangle in cube(2, 2, 12, 6.0))]
-#: Bodies above a base that is a sound cube.
+#: Surfaces of the body above a base that is a sound cube.
 BODIES = {
     "two solids on one edge": (stl([*HOLLOW, *cube(10, 0, 20)]), "not that of a solid: 1 edges"),
-    "a hole": (stl(HOLLOW[2:]), "not closed: 4 edges have one triangle"),
+    "a hole": (stl(HOLLOW[2:]), "body is not closed: 4 edges have one triangle"),
     "a fin": (
         stl([*HOLLOW, np.array([[0.0, 0, 20], [10, 0, 20], [5, 0, 30]])]),
         "not closed",
@@ -84,6 +84,15 @@ BODIES = {
     "text": (b"hello", "holds no triangles"),
     "empty": (b"", "holds no triangles"),
     "a binary head alone": (b"\0" * 84, "holds no triangles"),
+    "missing": (None, "does not exist"),
+}
+
+#: Surfaces of the base below a body that is sound.
+BASES = {
+    "two solids on one edge": (stl([*cube(0, 0, 0), *cube(10, 0, -10)]), "base is not that of a"),
+    "a hole": (stl(cube(0, 0, 0)[2:]), "base is not closed: 4 edges have one triangle"),
+    "smaller": (stl(cube(1, 1, 2, 8.0)), "must cover the same area of the paper plane"),
+    "text": (b"hello", "holds no triangles"),
     "missing": (None, "does not exist"),
 }
 
@@ -113,19 +122,42 @@ def test_meshes_that_cannot_be_solved(
     assert words in told
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    ("which", "name"),
+    [*(("body", name) for name in BODIES), *(("base", name) for name in BASES)],
+)
 def test_surfaces_that_cannot_be_meshed(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    which: str,
+    name: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    content, words = BODIES[name]
-    (tmp_path / "base.stl").write_bytes(stl(cube(0, 0, 0)))
-    if content is not None:
-        (tmp_path / "body.stl").write_bytes(content)
+    content, words = (BODIES if which == "body" else BASES)[name]
+    files: dict[str, bytes | None] = {"body": stl(HOLLOW), "base": stl(cube(0, 0, 0))}
+    for part, sound in (files | {which: content}).items():
+        if sound is not None:
+            (tmp_path / f"{part}.stl").write_bytes(sound)
     told = refused(
         tmp_path, capsys, monkeypatch, "mesh", "--body", "body.stl", "--base", "base.stl"
     )
-    assert "body.stl" in told
+    assert f"{which}.stl" in told
     assert words in told
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e6])
+def test_surfaces_in_another_unit(
+    factor: float,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for part, triangles in (("body", HOLLOW), ("base", cube(0, 0, 0))):
+        (tmp_path / f"{part}.stl").write_bytes(stl(factor * one for one in triangles))
+    told = refused(
+        tmp_path, capsys, monkeypatch, "mesh", "--body", "body.stl", "--base", "base.stl"
+    )
+    assert "coordinates must be in mm" in told
 
 
 def test_a_sound_mesh_is_no_bad_one(

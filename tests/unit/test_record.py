@@ -56,6 +56,23 @@ def test_a_record_tells_machine_and_configuration(record: Record, tmp_path: Path
     assert read_record(tmp_path).machine == content["machine"]
 
 
+def test_a_configuration_that_was_changed_is_refused(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path)
+    path = tmp_path / RECORD_NAME
+    path.write_text(path.read_text().replace('"size_mm": 3.0', '"size_mm": 2.0'))
+    with pytest.raises(InputError, match="is not the one it was made by"):
+        read_record(tmp_path)
+
+
+def test_an_older_record_is_read(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path)
+    content = json.loads((tmp_path / RECORD_NAME).read_text())
+    for key in ("machine", "configuration_sha256", "files"):
+        del content[key]
+    (tmp_path / RECORD_NAME).write_text(json.dumps(content))
+    assert read_record(tmp_path).machine == {}
+
+
 def test_the_order_of_a_configuration_does_not_change_its_hash() -> None:
     assert configuration_hash({"a": 1, "b": 0.5}) == configuration_hash({"b": 0.5, "a": 1})
     assert configuration_hash({"a": 1}) != configuration_hash({"a": 2})

@@ -43,6 +43,9 @@ def results(tmp_path: Path) -> Path:
         record(place, "screening", 100 * number, 60 * number)
     (tmp_path / "benchmarks").mkdir()
     (tmp_path / "benchmarks/selection.tsv").write_text("s\tmax_rss\n30\t100\n")
+    (tmp_path / "benchmarks/screening").mkdir()
+    (tmp_path / "benchmarks/screening/training.tsv").write_text("s\tmax_rss\n60\t200\n")
+    (tmp_path / "benchmarks/screening/training_1.tsv").write_text("s\tmax_rss\n9\t9\n")
     (tmp_path / "benchmarks/fronts.tsv").write_text("s\tmax_rss\n0\t-\n")
     return tmp_path
 
@@ -55,12 +58,15 @@ def printed(*options: object) -> subprocess.CompletedProcess[str]:
 def test_jobs_are_told_beside_what_their_rules_ask_for(results: Path) -> None:
     answer = printed(results)
     assert answer.returncode == 0, answer.stderr
+    assert f"`python benchmarks/resources.py {results}`" in answer.stdout
+    assert "Machines of which records tell nothing. pagd " in answer.stdout
     rows = [line.strip("| ").split(" | ") for line in answer.stdout.splitlines() if "`" in line]
     found = {row[0].strip("`"): row[1:] for row in rows if len(row) > 1}
     assert found == {
         "prepare": ["2", "300", "300", "2,000", "0.40", "0.40", "40"],
         "solve": ["1", "1,500", "1,500", "4,000", "1.50", "1.50", "120"],
         "screen_part": ["3", "200", "300", "2,000", "2.00", "3.00", "60"],
+        "screened": ["1", "210", "210", "2,000", "1.00", "1.00", "10"],
         "select": ["1", "105", "105", "1,000", "0.50", "0.50", "10"],
     }
 

@@ -62,6 +62,8 @@ class Cluster:
     jobs: dict[str, dict[str, Any]] = field(default_factory=dict)
     processes: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
     refusals: int = 0
+    #: What every question is answered with, where it is not None: a code.
+    out_of_order: int | None = None
 
     def start(self) -> None:
         """Listen, and write the file that tells clients where."""
@@ -113,7 +115,7 @@ class Cluster:
                 stderr=log,
                 start_new_session=True,
             )
-            limit = body["spec"].get("activeDeadlineSeconds")
+            limit = body["spec"]["template"]["spec"].get("activeDeadlineSeconds")
             try:
                 code = self.processes[name].wait(timeout=limit)
             except subprocess.TimeoutExpired:
@@ -148,6 +150,15 @@ def _handler(cluster: Cluster) -> type[BaseHTTPRequestHandler]:
     class Handler(BaseHTTPRequestHandler):
         protocol_version = "HTTP/1.1"
 
+        def parse_request(self) -> bool:
+            if not super().parse_request():
+                return False
+            if cluster.out_of_order is None:
+                return True
+            self.close_connection = True
+            self._answer(cluster.out_of_order, {"message": "out of order"})
+            return False
+
         def do_POST(self) -> None:
             length = int(self.headers["Content-Length"])
             body = json.loads(self.rfile.read(length))
@@ -155,22 +166,32 @@ def _handler(cluster: Cluster) -> type[BaseHTTPRequestHandler]:
             if fault is not None:
                 cluster.refusals += 1
                 self._answer(422, {"message": fault})
-                return
-            if body["metadata"]["name"] in cluster.jobs:
+            elif body["metadata"]["name"] in cluster.jobs:
                 self._answer(409, {"message": "already there"})
-                return
-            cluster.create(body)
-            self._answer(201, body)
+            else:
+                cluster.create(body)
+                self._answer(201, body)
 
         def do_GET(self) -> None:
-            place = _PLACE.match(urlparse(self.path).path.removesuffix("/status"))
-            if place and place["name"]:
-                self._answer(200, cluster.jobs[place["name"]])
+            place = _PLACE.match(urlparse(self.path).path)
+            name = place["name"] if place else None
+            if name and name not in cluster.jobs:
+                self._answer(404, {"message": "no such Job"})
+                return
+            if name:
+                self._answer(200, cluster.jobs[name])
                 return
             query = parse_qs(urlparse(self.path).query)
-            key, _, value = query["labelSelector"][0].partition("=")
-            jobs = list(cluster.jobs.values())
-            items = [job for job in jobs if job["metadata"]["labels"].get(key) == value]
+            wanted = [one.partition("=") for one in query["labelSelector"][0].split(",")]
+            items = [
+                job
+                for job in list(cluster.jobs.values())
+                if all(
+                    key in job["metadata"]["labels"]
+                    and (not value or job["metadata"]["labels"][key] == value)
+                    for key, _, value in wanted
+                )
+            ]
             self._answer(200, {"kind": "JobList", "items": items})
 
         def do_DELETE(self) -> None:

@@ -8,9 +8,11 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
+from unittest.mock import Mock
 
 import mlcroissant as mlc
 import pandas as pd
@@ -133,12 +135,100 @@ def test_the_same_run_gives_the_same_bytes(
 def test_the_file_of_a_data_set_holds_all_of_it(archive: Path, tmp_path: Path) -> None:
     pack(archive, tmp_path / "set.zip")
     with unpacked(tmp_path / "set.zip") as folder:
-        assert folder.name.startswith("pagd-pneu-nets-")
+        assert folder.name == "pagd-pneu-nets-2026.1.31"
         assert differing(folder) == []
         assert (folder / "SHA256SUMS").read_bytes() == (archive / "SHA256SUMS").read_bytes()
-    (tmp_path / "no.zip").write_text("nothing")
-    with pytest.raises(InputError, match="nor a ZIP file of one"), unpacked(tmp_path / "no.zip"):
+
+
+def without_checksums(archive: Path, path: Path) -> None:
+    with zipfile.ZipFile(path, "w") as packed:
+        packed.writestr("some/file", "text")
+
+
+def with_two_folders(archive: Path, path: Path) -> None:
+    with zipfile.ZipFile(path, "w") as packed:
+        packed.writestr("one/file", "text")
+        packed.writestr("two/file", "text")
+
+
+def with_a_changed_byte(archive: Path, path: Path) -> None:
+    pack(archive, path)
+    content = bytearray(path.read_bytes())
+    content[200] ^= 0xFF
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda archive, path: path.write_text("nothing"), "nor a ZIP file of one"),
+        (lambda archive, path: None, "there is no such file"),
+        (with_a_changed_byte, "nor a ZIP file of one"),
+        (with_two_folders, "holds one folder, and no more"),
+        (without_checksums, "SHA256SUMS: there is no such file"),
+    ],
+)
+def test_files_that_are_no_data_set_are_told(
+    archive: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    make: Callable[[Path, Path], object],
+    words: str,
+) -> None:
+    make(archive, tmp_path / "some.zip")
+    assert main(["check-archive", str(tmp_path / "some.zip")]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert len(told.splitlines()) == 1
+
+
+def test_a_file_larger_than_the_disk_is_not_unpacked(
+    archive: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pack(archive, tmp_path / "set.zip")
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: Mock(free=1000))
+    with pytest.raises(InputError, match="MB that are free"), unpacked(tmp_path / "set.zip"):
         pass
+
+
+def test_a_damaged_data_set_is_not_looked_at_further(
+    archive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(archive, copy)
+    (copy / "data/designs/train.parquet").write_bytes(b"PAR1")
+    (copy / "more").write_text("of somebody else")
+    assert main(["check-archive", str(copy)]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told == [
+        "data/designs/train.parquet is missing, or not what its checksum says.",
+        "more is missing, or not what its checksum says.",
+        f"{copy} is damaged: what it says is not looked at.",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("target", "words"),
+    [
+        ("folder", "is a folder, not a ZIP file"),
+        ("set/all.zip", "must not lie in the data set itself"),
+        ("notes.txt", "is there, and no ZIP file; it is not replaced"),
+    ],
+)
+def test_what_the_zip_must_not_be_is_told_before_the_work(
+    simulated: Project,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    target: str,
+    words: str,
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "notes.txt").write_text("mine")
+    command = ["archive", str(simulated / ""), "--out", str(tmp_path / "set")]
+    assert main([*command, "--zip", str(tmp_path / target)]) == 2
+    assert words in capsys.readouterr().err
+    assert not (tmp_path / "set").exists()
+    assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 def test_every_analysis_tells_what_made_it(
@@ -149,11 +239,14 @@ def test_every_analysis_tells_what_made_it(
     assert set(performance["provenance"]) == set(told)
     keys = performance.groupby("fidelity")["provenance"].agg(set)
     (cells,), (full,) = keys["cells"], keys["full"]
-    solved = read_record(simulated / "designs/straight/solve")
-    assert told[full]["configuration"]["solve"] == solved.configuration["solve"]
-    assert told[full]["versions"]["solve"] == [solved.versions]
+    for stage in ("geometry", "repair", "mesh", "solve", "metrics"):
+        record = read_record(simulated / "designs/straight" / stage)
+        made_of = {k: v for k, v in record.configuration.items() if k != "design"}
+        assert told[full]["configuration"][stage] == made_of
+        assert told[full]["versions"][stage] == [record.versions]
     screened = read_record(simulated / "screening/training")
-    assert told[cells]["configuration_sha256"] == configuration_hash(screened.configuration)
+    assert told[cells]["configuration"] == {"screening": screened.configuration}
+    assert told[cells]["configuration_sha256"] == configuration_hash(told[cells]["configuration"])
     assert told[cells]["machines"] == told[full]["machines"] == [machine_class()]
 
 
@@ -174,8 +267,11 @@ def test_the_metadata_of_a_doi_keep_to_their_schema(archive: Path) -> None:
     content = json.loads((archive / "datacite.json").read_text())
     assert list(schema45.validator.iter_errors(content)) == []
     assert content["publicationYear"] == "2026"
-    tables = list(archive.glob("data/*/*.parquet"))
-    assert content["sizes"][0] == f"{sum(table.stat().st_size for table in tables)} bytes"
+    own = ("SHA256SUMS", "datacite.json")
+    files = [one for one in archive.rglob("*") if one.is_file() and one.name not in own]
+    size = sum(file.stat().st_size for file in files)
+    assert content["sizes"] == [f"{size} bytes", f"{len(files)} files"]
+    assert content["version"] == "2026.1.31"
 
 
 def test_designs_simulated_elsewhere_join(simulated: Project, tmp_path: Path) -> None:
@@ -189,6 +285,7 @@ def test_designs_of_another_material_are_refused(simulated: Project, tmp_path: P
     shutil.copytree(simulated / "designs/straight", other)
     record = json.loads((other / "solve/record.json").read_text())
     record["configuration"]["material"]["name"] = "jelly"
+    record["configuration_sha256"] = configuration_hash(record["configuration"])
     (other / "solve/record.json").write_text(json.dumps(record))
     with pytest.raises(InputError, match="softer: made with another 'material' than"):
         write_archive(simulated / "", tmp_path / "set", [other.parent])

@@ -107,11 +107,35 @@ def test_all_that_it_names_is_there(described: Project) -> None:
 
 
 def test_tables_of_one_name_are_both_kept(tmp_path: Path) -> None:
-    tables = [tmp_path / folder / "designs.csv" for folder in ("a", "b")]
+    names = ("a/1-designs.csv", "b/designs.csv", "c/designs.csv")
+    tables = [tmp_path / name for name in names]
     for table in tables:
         table.parent.mkdir()
         table.write_text(table.parent.name)
     write_run_crate(tmp_path / "results", ROOT, {}, [*tables, tables[0]])
-    kept = sorted((tmp_path / "results/provenance/inputs").iterdir())
-    assert [path.name for path in kept] == ["1-designs.csv", "designs.csv"]
-    assert [path.read_text() for path in kept] == ["b", "a"]
+    kept = (tmp_path / "results/provenance/inputs").iterdir()
+    assert {path.name: path.read_text() for path in kept} == {
+        "1-designs.csv": "a", "designs.csv": "b", "2-designs.csv": "c"
+    }  # fmt: skip
+
+
+def test_designs_of_an_earlier_run_are_not_counted(described: Project, tmp_path: Path) -> None:
+    shutil.copytree(described / "", tmp_path / "results")
+    earlier = tmp_path / "results/designs/earlier"
+    shutil.copytree(tmp_path / "results/designs/straight", earlier)
+    write_run_crate(tmp_path / "results", ROOT, {}, [])
+    (action,) = [
+        one for one in ROCrate(tmp_path / "results").get_entities() if one.type == "CreateAction"
+    ]
+    assert "ok 1, invalid_geometry 1." in action["description"]
+
+
+def test_records_without_a_machine_are_described_too(described: Project, tmp_path: Path) -> None:
+    shutil.copytree(described / "", tmp_path / "results")
+    for path in (tmp_path / "results/designs").rglob("record.json"):
+        content = json.loads(path.read_text())
+        del content["machine"], content["configuration_sha256"]
+        path.write_text(json.dumps(content))
+    write_run_crate(tmp_path / "results", ROOT, {}, [])
+    text = (tmp_path / "results/ro-crate-metadata.json").read_text()
+    assert "Machines: not known." in text
