@@ -6,6 +6,7 @@ Stages are imported where they are used: each needs libraries that the others do
 from __future__ import annotations
 
 import re
+import sys
 from argparse import Namespace
 from pathlib import Path
 
@@ -21,12 +22,13 @@ __all__ = [
     "geometry",
     "mesh",
     "metrics",
-    "page",
     "repair",
+    "report",
     "run_all",
     "show_design",
     "solve",
     "summary",
+    "view",
 ]
 
 # Of a deck's steps to each recorded pressure, as a share of the step.
@@ -174,11 +176,26 @@ def summary(options: Namespace) -> int:
     return 0
 
 
-def page(options: Namespace) -> int:
+def report(options: Namespace) -> int:
     """Write the page of designs."""
     from pagd.figures.page import write_page
 
     write_page(options.design_folders, options.out)
+    return 0
+
+
+def view(options: Namespace) -> int:
+    """Write the page of designs beside the first of them, and show it in the browser."""
+    import webbrowser
+
+    from pagd.figures.page import write_page
+
+    first: Path = options.design_folders[0]
+    page = options.out or first.resolve().with_name(f"{first.resolve().name}.html")
+    write_page(options.design_folders, page)
+    print(page)
+    if not options.no_browser and not webbrowser.open(page.resolve().as_uri()):
+        print("pagd: no browser was found; open the page in one.", file=sys.stderr)
     return 0
 
 

@@ -7,6 +7,8 @@ import functools
 from pathlib import Path
 from typing import Any
 
+import shtab
+
 from pagd import __version__
 from pagd.cli.arguments import (
     add_command,
@@ -30,6 +32,8 @@ examples:
   pagd generate --mode mixed -n 100 --out mixed    new designs that bend and twist
   pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
   pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
+  pagd view my_design                              shape, curves and figures in the browser
+  pagd status                                      how far a run of the workflow is
 
 exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a fault of pagd,
 75 the machine failed (disk, memory, time): the same may succeed later
@@ -47,6 +51,9 @@ def make_parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"pagd {__version__}")
+    shtab.add_argument_to(
+        parser, "--print-completion", help="print what makes a shell complete words, and end"
+    )
     commands = parser.add_subparsers(metavar="command", required=True)
     _add_run(commands)
     _add_design(commands)
@@ -211,8 +218,9 @@ def _add_figures(commands: Any) -> None:
 
 def _add_gathering(commands: Any) -> None:
     summary = add_command(commands, "summary", "summary", "tables of designs: one row a design")
-    page = add_command(commands, "page", "page", "page of designs: open it in a browser")
-    for command, out in ((summary, "folder of the tables"), (page, "HTML file to write")):
+    report = add_command(commands, "report", "report", "page of designs, for any browser")
+    view = add_command(commands, "view", "view", "the same page, shown in the browser at once")
+    for command in (summary, report, view):
         command.add_argument(
             "design_folders",
             type=Path,
@@ -220,8 +228,11 @@ def _add_gathering(commands: Any) -> None:
             metavar="FOLDER",
             help="folder with a design's stage folders",
         )
-        command.add_argument("--out", type=Path, required=True, help=out)
         add_verbose(command)
+    summary.add_argument("--out", type=Path, required=True, help="folder of the tables")
+    report.add_argument("--out", type=Path, required=True, help="HTML file to write")
+    view.add_argument("--out", type=Path, help="HTML file to write (default: beside the folder)")
+    view.add_argument("--no-browser", action="store_true", help="write the page, and show nothing")
     summary.add_argument(
         "--dataset",
         type=Path,

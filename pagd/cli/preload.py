@@ -19,7 +19,7 @@ _MODULES = (
 
 
 def preload() -> int:
-    """Import the stages, read the schemas, find the linear solver, load the compiled kernels.
+    """Import the stages, read what they ask for each time, load solver and compiled kernels.
 
     Starts no thread, so that the process may fork afterwards. Returns how many kernels there are.
     """
@@ -29,8 +29,12 @@ def preload() -> int:
     from pagd.cli.parser import make_parser
     from pagd.fem.compiled import load_kernels
     from pagd.fem.linear_solver import linear_solver
+    from pagd.machine import machine_class
+    from pagd.record import versions
 
     make_parser()
+    versions(1)
+    machine_class()
     for name in ("config", "designs", "record"):
         list(validation.faults({}, name))
     linear_solver(config.load(None)["solve"]["linear_solver"]).free()

@@ -1,7 +1,11 @@
+import contextlib
+import io
 import json
 import re
+import shutil
 import subprocess
 import sys
+import webbrowser
 from pathlib import Path
 
 import pytest
@@ -44,6 +48,56 @@ def test_every_subcommand_has_a_handler() -> None:
     for module in (commands, generative):
         for name in module.__all__:
             assert callable(getattr(module, name))
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+def test_shells_can_complete_words(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["--print-completion", shell])
+    assert end.value.code in (None, 0)
+    text = capsys.readouterr().out
+    assert "check-archive" in text
+    assert "keep-going" in text
+
+
+@pytest.mark.skipif(not shutil.which("bash"), reason="needs: bash")
+def test_bash_completes_subcommands_and_options(tmp_path: Path) -> None:
+    with pytest.raises(SystemExit), contextlib.redirect_stdout(io.StringIO()) as script:
+        main(["--print-completion", "bash"])
+    (tmp_path / "completion").write_text(script.getvalue())
+    words = """
+        source completion
+        complete_of() {
+            COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=()
+            function=$(complete -p pagd | sed -E 's/.*-F ([^ ]+).*/\\1/')
+            "$function" pagd "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
+            echo "${COMPREPLY[@]}"
+        }
+        complete_of pagd stat
+        complete_of pagd status --js
+    """
+    answer = subprocess.run(
+        ["bash", "-c", words], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert answer.stdout.split() == ["status", "--json"]
+
+
+def test_view_writes_the_page_beside_the_design_and_opens_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", json.dumps(THIN), "--out", str(tmp_path / "thin")]) == 1
+    capsys.readouterr()
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", lambda url: bool(opened.append(url)))
+    assert main(["view", str(tmp_path / "thin")]) == 0
+    page = tmp_path / "thin.html"
+    told = capsys.readouterr()
+    assert opened == [page.as_uri()]
+    assert told.out == f"{page}\n"
+    assert told.err == "pagd: no browser was found; open the page in one.\n"
+    assert "t_ab = 0.2" in page.read_text()
+    assert main(["view", str(tmp_path / "thin"), "--no-browser"]) == 0
+    assert len(opened) == 1
 
 
 def test_show_tells_what_follows(capsys: pytest.CaptureFixture[str]) -> None:
