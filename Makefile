@@ -11,7 +11,7 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep screen test verify drill peers lint clean distclean system-packages
+.PHONY: help run dataset sweep screen test verify drill peers docs lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
@@ -49,6 +49,10 @@ peers: .venv/pagd-installed ## Compare with CalculiX, FElupe and NGSolve: sectio
 	python benchmarks/peers.py equal-error --mesher structured --half-model --time-limit 600 \
 		--finer 3 --page docs/performance.md
 	python benchmarks/peers.py iteration --page docs/performance.md
+
+docs: .venv/pagd-installed ## Write the documentation as a site for any browser: build/docs/index.html.
+	python -m sphinx -c docs/site -W --keep-going -q . build/docs
+	@echo "Open build/docs/index.html."
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .

@@ -7,6 +7,7 @@ or lack one that is required.
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import signal
@@ -64,6 +65,8 @@ class Cluster:
     refusals: int = 0
     #: What every question is answered with, where it is not None: a code.
     out_of_order: int | None = None
+    #: How many questions that is so for.
+    out_of_order_for: float = math.inf
 
     def start(self) -> None:
         """Listen, and write the file that tells clients where."""
@@ -157,6 +160,9 @@ def _handler(cluster: Cluster) -> type[BaseHTTPRequestHandler]:
                 return True
             self.close_connection = True
             self._answer(cluster.out_of_order, {"message": "out of order"})
+            cluster.out_of_order_for -= 1
+            if cluster.out_of_order_for <= 0:
+                cluster.out_of_order = None
             return False
 
         def do_POST(self) -> None:

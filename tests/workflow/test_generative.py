@@ -170,7 +170,8 @@ def test_another_measure_runs_the_comparison_only(copied: Project) -> None:
     changed = GENERATIVE["diversity"] | {"hull_repeats": 12}
     copied.write(STRAIGHT, **GENERATIVE | {"diversity": changed})
     assert copied.pending() == {
-        "diversity", "summary/diversity.json", "figures/generative", "report/index.html"
+        "diversity", "summary/diversity.json", "figures/generative", "report/index.html",
+        "ro-crate-metadata.json", "provenance"
     }  # fmt: skip
 
 

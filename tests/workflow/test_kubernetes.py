@@ -7,7 +7,6 @@ import re
 import shutil
 import subprocess
 import sys
-import threading
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -122,13 +121,11 @@ def test_a_sweep_survives_a_killed_pod_and_a_killed_snakemake(
     assert cluster.jobs[killed]["status"] == {"failed": 1}
     assert cluster.jobs[again]["status"] == {"succeeded": 1}
     assert memory_of(cluster.jobs[killed]) == "4000M"
-    # What was at work when Snakemake was killed has not been submitted again, nor what was done;
-    # but for a job that came to its end while no Snakemake was there to note it.
-    outputs = Counter(job["metadata"]["labels"]["pagd-output"] for job in cluster.jobs.values())
-    assert outputs[cluster.jobs[killed]["metadata"]["labels"]["pagd-output"]] == 2
+    # What was done when Snakemake was killed has not been submitted again. (What came to its end
+    # while no Snakemake was there to note it may have been: up to two, on two processors.)
     rules = Counter(name.split("-")[1] for name in cluster.jobs)
     assert rules["prepare"] == 3
-    assert 4 <= rules["solve"] <= 5
+    assert 4 <= rules["solve"] <= 6
 
 
 def test_the_job_is_one_by_the_models_of_the_official_client(cloned: Project) -> None:
@@ -224,8 +221,7 @@ def test_a_cluster_that_does_not_answer_has_not_lost_its_jobs(
 def test_a_job_is_submitted_though_the_cluster_was_out_of_order(
     cluster: Cluster, cloned: Project
 ) -> None:
-    cluster.out_of_order = 500
-    threading.Timer(1.5, lambda: setattr(cluster, "out_of_order", None)).start()
+    cluster.out_of_order, cluster.out_of_order_for = 500, 1
     answer = ask(cloned, cluster, *SUBMIT, "--minutes", 40, "jobscript")
     assert answer.returncode == 0
     assert answer.stdout.strip().removeprefix("default/") in cluster.jobs
