@@ -14,6 +14,7 @@ from reduced_samples import SLANTED, STRAIGHT
 
 from pagd.cli import main
 from pagd.errors import InputError
+from pagd.machine import machine_class
 from pagd.record import read_record
 from pagd.reduced.blocked import Blocked
 from pagd.reduced.solve import ReducedRow
@@ -149,6 +150,16 @@ def test_parts_share_a_table_and_are_gathered(table: Path, tmp_path: Path) -> No
     assert record.configuration == read_record(parts[0]).configuration
     trajectories = read_rows(tmp_path / "all" / "trajectories.parquet")
     assert {row["design_id"] for row in trajectories} == {"straight", "slanted"}
+    # Parts may be made on several machines, of which each is told.
+    path = parts[1] / "record.json"
+    content = json.loads(path.read_text())
+    content["machine"]["processor"] = "Another"
+    path.write_text(json.dumps(content))
+    record = screening.gather(parts, tmp_path / "both")
+    told = [one["machine"]["processor"] for one in record.figures["made_by"]]
+    assert told == [machine_class()["processor"], "Another"]
+    assert len(of_screening(tmp_path / "both")["machines"]) == 2
+    assert len(of_screening(tmp_path / "all")["machines"]) == 1
 
 
 def test_parts_of_another_configuration_are_refused(table: Path, tmp_path: Path) -> None:
