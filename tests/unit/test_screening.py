@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from reduced_samples import SLANTED, STRAIGHT
 
+from pagd.archive.provenance import of_screening
 from pagd.cli import main
 from pagd.errors import InputError
 from pagd.machine import machine_class
@@ -285,6 +286,7 @@ def test_a_fault_of_a_design_is_told_and_the_others_go_on(
 
 CRASHING = """
 import os, signal, sys
+from pagd.archive.provenance import of_screening
 from pagd.cli import main
 from pagd.stages import screening
 
