@@ -11,37 +11,63 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pagd.design import PARAMETERS, Design
+from pagd.design import Design, Parameter
 from pagd.design.model import as_number
 from pagd.documents import read_document
 from pagd.errors import InputError
-from pagd.validation import check, check_each
+from pagd.families import PNEUNET, Actuator, PneuNet, actuator_of, family_named
+from pagd.families.parameters import schema_of
+from pagd.validation import check, check_by, check_each
 
-__all__ = ["NamedDesign", "design_from", "read_designs"]
+__all__ = ["NamedDesign", "design_from", "read_designs", "read_pneunets"]
 
 
 # A tenth of the smallest side of the sampling box, and more than the largest one is in metres.
 _SMALLEST_SIDE_MM = 0.5
+# The same of families: so small a share of what their sampling boxes begin with.
+_METRES = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NamedDesign:
-    """A design, its name (unique in a run: the design_id) and the table it comes from."""
+    """A design, its name (unique in a run: the design_id) and the table it comes from.
+
+    The design of a pneu-net is a :class:`pagd.design.Design`, that of another family an actuator.
+    """
 
     name: str
     origin: str
-    design: Design
+    design: Design | Actuator
 
     @classmethod
     def from_row(cls, row: Mapping[str, Any]) -> NamedDesign:
         """Make one of a row that has passed the schema of designs, with name and origin."""
-        parameters = {key: row[key] for key in PARAMETERS}
-        design = Design.from_mapping(parameters)
+        family = family_named(row.get("family", PNEUNET))
+        made = family.from_mapping({key: row[key] for key in family.parameters()})
+        design = made.design if isinstance(made, PneuNet) else made
         return cls(name=row["name"], origin=row["origin"], design=design)
+
+    @property
+    def actuator(self) -> Actuator:
+        """The design, as the stages ask for it."""
+        return actuator_of(self.design)
+
+    @property
+    def pneunet(self) -> Design:
+        """The design of a pneu-net; ``InputError`` if it is of another family."""
+        if isinstance(self.design, Design):
+            return self.design
+        raise InputError(
+            f"design {self.name}: family = {self.design.family!r} must be {PNEUNET} here: data "
+            "set, generators, and analyses by a chamber each, are of pneu-nets alone."
+        )
 
     def as_json(self) -> str:
         """Return it as one line of JSON with a fixed order of keys."""
-        return json.dumps({"name": self.name, "origin": self.origin, **self.design.as_dict()})
+        # A pneu-net names no family, now as before there were others.
+        family = {} if isinstance(self.design, Design) else {"family": self.design.family}
+        row = {"name": self.name, "origin": self.origin, **family, **self.design.as_dict()}
+        return json.dumps(row)
 
 
 def design_from(source: str) -> NamedDesign:
@@ -55,15 +81,17 @@ def design_from(source: str) -> NamedDesign:
     given, file = read_document(source, "design")
     # A file's name serves as the name of a design that has none.
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(file).stem).strip("-") or "design"
-    row = {"name": name, "origin": "own", **given}
-    where = f"design {file or row['name']}"
-    check(row, "designs", where)
-    _check_unit(where, row)
+    where = f"design {file or given.get('name', name)}"
+    row = _with_family(where, {"name": name, "origin": "own", **given})
+    _check_row(where, row)
     return NamedDesign.from_row(row)
 
 
 def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str, NamedDesign]:
-    """Read tables of designs: a column ``name``, one a parameter, and if wanted origin and source.
+    """Read tables of designs: a column ``name``, one a parameter, and if wanted others.
+
+    They are ``origin``, ``source``, ``notes``, and ``family`` where designs are no pneu-nets. A
+    table may have designs of several families: what has no value in a row is not of it.
 
     Parameters
     ----------
@@ -86,10 +114,25 @@ def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str
     """
     rows = [row for origin, path in tables.items() for row in _rows(Path(path), origin)]
     if checked:
-        check_each(rows, "designs")
+        # Tables of pneu-nets may be long: they are checked by one validator.
+        check_each([pair for pair in rows if _is_pneunet(pair[1])], "designs")
         for where, row in rows:
-            _check_unit(where, row)
+            _check_row(where, row, anew=not _is_pneunet(row))
     return _by_name((where, NamedDesign.from_row(row)) for where, row in rows)
+
+
+def read_pneunets(tables: Mapping[str, str], *, checked: bool = True) -> dict[str, NamedDesign]:
+    """Read tables of pneu-nets as :func:`read_designs` does.
+
+    Raises
+    ------
+    InputError
+        As there, and if a design is of another family.
+    """
+    found = read_designs(tables, checked=checked)
+    for named in found.values():
+        _ = named.pneunet
+    return found
 
 
 def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
@@ -98,7 +141,8 @@ def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
         first, rows = 1, _rows_of_parquet(path)
     else:
         first, rows = 2, _rows_of_csv(path)  # row 1 of the file is the heading
-    return [(f"{path}, row {i}", _typed(row, origin)) for i, row in enumerate(rows, start=first)]
+    numbered = ((f"{path}, row {i}", row) for i, row in enumerate(rows, start=first))
+    return [(where, _typed(where, row, origin)) for where, row in numbered]
 
 
 def _rows_of_csv(path: Path) -> list[dict[str, Any]]:
@@ -134,19 +178,40 @@ def _rows_of_parquet(path: Path) -> list[dict[str, Any]]:
     from pagd.tables import GENERATED, read_rows
 
     # A design is its independent parameters: the rest is computed anew, and cannot contradict them.
-    left_out = {column.name for column in GENERATED} - {*PARAMETERS, "origin"}
+    computed = {column.name for column in GENERATED} - {"origin"}
     # Nor is the index that pandas adds to what has been filtered.
-    left_out |= {f"__index_level_{level}__" for level in range(2)}
-    return [
-        {"name": row.get("design_id")} | {k: v for k, v in row.items() if k not in left_out}
-        for row in read_rows(path)
-    ]
+    index = {f"__index_level_{level}__" for level in range(2)}
+    found = []
+    for number, row in enumerate(read_rows(path), start=1):
+        own = _parameters_of(f"{path}, row {number}", row)
+        left_out = (computed - set(own)) | index
+        rest = {key: value for key, value in row.items() if key not in left_out}
+        found.append({"name": row.get("design_id")} | rest)
+    return found
 
 
-def _typed(row: Mapping[str, Any], origin: str) -> dict[str, Any]:
+def _typed(where: str, row: Mapping[str, Any], origin: str) -> dict[str, Any]:
     given = {key: value for key, value in row.items() if value not in ("", None)}
-    numbers = {key: _number(given[key]) for key in PARAMETERS if key in given}
-    return {"origin": origin, **given, **numbers}
+    parameters = _parameters_of(where, given)
+    numbers = {key: _number(given[key]) for key in parameters if key in given}
+    return _with_family(where, {"origin": origin, **given, **numbers})
+
+
+def _with_family(where: str, row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row without the family where it is the one that need not be told."""
+    _parameters_of(where, row)
+    return {key: value for key, value in row.items() if (key, value) != ("family", PNEUNET)}
+
+
+def _is_pneunet(row: Mapping[str, Any]) -> bool:
+    return "family" not in row
+
+
+def _parameters_of(where: str, row: Mapping[str, Any]) -> Mapping[str, Parameter]:
+    try:
+        return family_named(row.get("family") or PNEUNET).parameters()
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def _number(text: str) -> float | str:
@@ -155,10 +220,26 @@ def _number(text: str) -> float | str:
     return text if number is None else number
 
 
-def _check_unit(where: str, row: Mapping[str, Any]) -> None:
+def _check_row(where: str, row: Mapping[str, Any], *, anew: bool = True) -> None:
+    """Refuse a row that breaks the schema of its family, or that has lengths in metres.
+
+    ``anew`` is false for one that has passed the schema already.
+    """
+    if _is_pneunet(row):
+        if anew:
+            check(row, "designs", where)
+        _refuse_metres(where, row, dict.fromkeys(("L", "W", "H"), _SMALLEST_SIDE_MM))
+        return
+    parameters = _parameters_of(where, row)
+    check_by(schema_of(parameters), row, where)
+    lengths = {key: _METRES * p.low for key, p in parameters.items() if p.unit == "mm" and p.low}
+    _refuse_metres(where, row, lengths)
+
+
+def _refuse_metres(where: str, row: Mapping[str, Any], smallest: Mapping[str, float]) -> None:
     """Refuse lengths that can only be metres: no actuator is so small, and all would fail."""
-    sides = {key: row[key] for key in ("L", "W", "H")}
-    if all(0 < side < _SMALLEST_SIDE_MM for side in sides.values()):
+    sides = {key: row[key] for key in smallest}
+    if sides and all(0 < side < smallest[key] for key, side in sides.items()):
         told = ", ".join(f"{key} = {side:g}" for key, side in sides.items())
         raise InputError(f"{where}: {told}: lengths must be in mm, and these look like metres.")
 

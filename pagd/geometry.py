@@ -14,15 +14,14 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from importlib import resources
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pagd.design import Design, GeometryRules, check
+from pagd.design import Design, GeometryRules
 from pagd.errors import InputError, MachineError, StageFailure, Status
+from pagd.families import Actuator, actuator_of
 from pagd.files import replaced_file, write_text
 from pagd.limits import die_with_parent
 
@@ -37,27 +36,31 @@ _STL_HEADER = 84
 _STL_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def write_design_scad(design: Design, rules: GeometryRules, path: Path) -> None:
+def write_design_scad(design: Design | Actuator, rules: GeometryRules, path: Path) -> None:
     """Write the OpenSCAD model with the values of one design, ready to be opened.
 
     The file needs no other: it holds the parameters, with their sliders, and the modules.
-    Where gaps or base thicknesses differ along the row, they are written chamber by chamber.
+
+    Raises
+    ------
+    InputError
+        If the model of the design's family lacks one of its settings.
     """
-    settings = {symbol: repr(value) for symbol, value in design.as_dict().items()}
-    settings |= {
-        "channel_width": repr(rules.channel.width),
-        "channel_height": repr(rules.channel.height),
-        "channel_roof": repr(rules.channel.roof),
-        "t_n_each": _vector_unless_constant(design.gaps()),
-        "t_b_each": _vector_unless_constant(design.base_thicknesses()),
-    }
-    model = resources.files("pagd").joinpath("scad", "pneunet.scad").read_text(encoding="utf-8")
-    lines = [_with_setting(line, settings) for line in model.splitlines()]
+    actuator = actuator_of(design)
+    settings, model = actuator.settings(rules), actuator.model().splitlines()
+    found = {match["name"] for match in map(_SETTING.match, model) if match}
+    missing = [name for name in settings if name not in found]
+    if missing:
+        raise InputError(
+            f"OpenSCAD model of the family {actuator.family}: has no line '{missing[0]} = …;' to "
+            f"set {' and '.join(missing)}."
+        )
+    lines = [_with_setting(line, settings) for line in model]
     write_text(path, "\n".join(lines) + "\n")
 
 
 def render(
-    design: Design,
+    design: Design | Actuator,
     rules: GeometryRules,
     part: Part,
     path: Path,
@@ -75,27 +78,27 @@ def render(
     path
         The STL file; it appears only when it is complete.
     half
-        Only y > 0, cut open at the plane of symmetry; for straight designs.
+        Only y > 0, cut open at the plane of symmetry; for symmetric designs.
     time_limit
         Seconds after which OpenSCAD is ended.
 
     Raises
     ------
     InputError
-        If OpenSCAD is not installed or does not start, or half of a slanted design is asked for.
+        If OpenSCAD is not installed or does not start, the model lacks a setting, or half of a
+        design that is not symmetric is asked for.
     StageFailure
         ``invalid_geometry`` if the design breaks a rule, or OpenSCAD fails or takes too long.
     """
-    check(design, rules)
-    if half and not design.is_straight:
-        raise InputError(
-            f"theta = {design.theta:g}, alpha = {design.alpha:g}: a design with slanted chambers"
-            " is not symmetric, so it has no half model."
-        )
+    actuator = actuator_of(design)
+    actuator.check(rules)
+    if half and not actuator.is_symmetric:
+        told = ", ".join(f"{symbol} = {value:g}" for symbol, value in actuator.as_dict().items())
+        raise InputError(f"A design that is not symmetric has no half model ({told}).")
     program = _openscad()
     with tempfile.TemporaryDirectory(prefix="pagd-") as folder, replaced_file(path) as target:
         model = Path(folder) / "design.scad"
-        write_design_scad(design, rules, model)
+        write_design_scad(actuator, rules, model)
         command = [program, "-q", "--export-format", "binstl", "-o", str(target)]
         command += ["-D", f'part="{part}"', "-D", f"half={str(half).lower()}", str(model)]
         _run(command, time_limit, f"the {part}")
@@ -202,10 +205,3 @@ def _widened(slider: str, value: float) -> str:
     if value > float(high):
         high = repr(value)
     return f"{low}:{step}:{high}"
-
-
-def _vector_unless_constant(values: NDArray[np.float64]) -> str:
-    """The values as an OpenSCAD vector; empty where they are all the same."""
-    if values.size == 0 or np.all(values == values[0]):
-        return "[]"
-    return str(values.tolist())

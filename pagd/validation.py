@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 from pagd.documents import parse_yaml
 from pagd.errors import InputError
 
-__all__ = ["check", "check_each", "defaults", "faults", "schema"]
+__all__ = ["check", "check_by", "check_each", "defaults", "faults", "schema"]
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -41,6 +41,18 @@ def check(document: Any, name: str, where: str) -> None:
         raise InputError(f"{where}: {'; '.join(found)}.")
 
 
+def check_by(of: Schema, document: Any, where: str) -> None:
+    """Refuse a document that breaks a schema that no file has; as :func:`check` otherwise.
+
+    Numbers that are not finite pass, as those of designs do.
+    """
+    from jsonschema import Draft202012Validator
+
+    found = list(_faults_by(Draft202012Validator(of), document))
+    if found:
+        raise InputError(f"{where}: {'; '.join(found)}.")
+
+
 def check_each(documents: Iterable[tuple[str, Any]], name: str) -> None:
     """Check many documents, each with the place where it stands, against one schema."""
     validator = _validator(name)
@@ -52,8 +64,12 @@ def check_each(documents: Iterable[tuple[str, Any]], name: str) -> None:
 
 def faults(document: Any, name: str) -> Iterator[str]:
     """Yield every fault of a document as ``key = value must …``, each once."""
+    return _faults_by(_validator(name), document)
+
+
+def _faults_by(validator: Any, document: Any) -> Iterator[str]:
     seen: set[str] = set()
-    for error in _validator(name).iter_errors(document):
+    for error in validator.iter_errors(document):
         key = error.json_path.removeprefix("$").removeprefix(".")
         sentence = _WORDS.get(error.validator, _other)(key, error)
         if sentence not in seen:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import tempfile
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -16,7 +17,7 @@ import pyarrow.parquet as pq
 from pagd.archive.provenance import Provenance, key_of, of_screening, of_simulation
 from pagd.archive.tables import PROVENANCE, TABLES
 from pagd.dataset import designs_of, frame_of, read_frame
-from pagd.design import identity
+from pagd.design import Design, identity
 from pagd.errors import InputError
 from pagd.inventory import read_sound_record
 from pagd.record import RECORD_NAME, read_record
@@ -25,6 +26,8 @@ from pagd.stages.novelty import novelty_of
 from pagd.summary import GATHERED, write_gathered, write_summary
 
 __all__ = ["Collected", "collected"]
+
+log = logging.getLogger(__name__)
 
 #: Tables of designs of a run by the set that they are, and the folder of their screening.
 _SETS: Final = {
@@ -139,12 +142,13 @@ def _ids(frame: pd.DataFrame) -> dict[str, str]:
 
 
 def _simulated(folders: Sequence[Path]) -> dict[str, Path]:
-    """Folders of designs that came as far as a record of their metrics, by name."""
+    """Folders of pneu-nets that came as far as a record of their metrics, by name."""
     found = [
         path.parent.parent
         for folder in folders
         if folder.is_dir()
         for path in sorted(folder.glob(f"*/metrics/{RECORD_NAME}"))
+        if _is_pneunet(path.parent.parent)
     ]
     twice = [name for name, count in Counter(path.name for path in found).items() if count > 1]
     if twice:
@@ -153,6 +157,15 @@ def _simulated(folders: Sequence[Path]) -> dict[str, Path]:
         read_sound_record(path / "metrics")
     _refuse_different(found)
     return {path.name: path for path in found}
+
+
+def _is_pneunet(folder: Path) -> bool:
+    """Tell whether a folder is of a pneu-net; of what is left out, the log tells."""
+    design = read_design(folder / "geometry").design
+    if isinstance(design, Design):
+        return True
+    log.warning("%s: left out, as a %s; the data set is of pneu-nets.", folder, design.family)
+    return False
 
 
 def _refuse_different(folders: Sequence[Path]) -> None:
@@ -178,15 +191,15 @@ def _made_of(folder: Path) -> dict[str, Any]:
 
 
 def _identity_of(folder: Path) -> str:
-    return identity(read_design(folder / "geometry").design)
+    return identity(read_design(folder / "geometry").pneunet)
 
 
 def _others(simulated: Mapping[str, Path], known: set[str]) -> pd.DataFrame:
     """Designs that were simulated and are of no set of the run."""
     named = [read_design(folder / "geometry") for folder in simulated.values()]
-    rest = [one for one in named if identity(one.design) not in known]
-    frame = frame_of([r.design for r in rest], [r.name for r in rest], [r.origin for r in rest])
-    frame["id"] = [identity(one.design) for one in rest]
+    rest = [one for one in named if identity(one.pneunet) not in known]
+    frame = frame_of([r.pneunet for r in rest], [r.name for r in rest], [r.origin for r in rest])
+    frame["id"] = [identity(one.pneunet) for one in rest]
     frame["set"] = _OTHER
     return frame
 

@@ -37,11 +37,10 @@ _FIRST_INCREMENT = 0.25
 
 def check_design(options: Namespace) -> int:
     """Tell every rule that a design breaks; 1 if it breaks any."""
-    from pagd.design import violations
     from pagd.stages.geometry import rules_of
 
     named = design_from(options.design)
-    broken = violations(named.design, rules_of(config_of(options)))
+    broken = named.actuator.violations(rules_of(config_of(options)))
     for violation in broken:
         print(violation)
     print(f"{named.name}: {'cannot be built' if broken else 'can be built'}")

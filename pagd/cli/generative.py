@@ -101,12 +101,12 @@ def diversity(options: Namespace) -> int:
 def screen(options: Namespace) -> int:
     """Run the stage screening."""
     checked_threads(options.processes, "--processes")
-    from pagd.catalogue import read_designs
+    from pagd.catalogue import read_pneunets
     from pagd.stages import screening as stage
     from pagd.stages.solve import materials_of
 
     config = config_of(options)
-    designs = list(read_designs({options.designs.stem: str(options.designs)}).values())
+    designs = list(read_pneunets({options.designs.stem: str(options.designs)}).values())
     record = stage.run(
         designs,
         options.out,

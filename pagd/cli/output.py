@@ -7,15 +7,9 @@ import sys
 from collections.abc import Callable
 
 from pagd.catalogue import NamedDesign
-from pagd.design import (
-    PARAMETERS,
-    GeometryRules,
-    base_volume,
-    body_volume,
-    cavity_volume,
-    violations,
-)
+from pagd.design import GeometryRules
 from pagd.errors import Status
+from pagd.families import PNEUNET
 from pagd.record import Record
 
 __all__ = ["print_design", "print_result", "progress_to", "start_log", "verdict"]
@@ -56,21 +50,22 @@ def verdict(record: Record, keep_going: bool) -> int:
 
 def print_design(named: NamedDesign, rules: GeometryRules) -> None:
     """Print the parameters of a design and, if it can be built, what follows from them."""
-    design = named.design
-    print(f"{named.name} ({named.origin})")
+    design = named.actuator
+    family = "" if design.family == PNEUNET else f", {design.family}"
+    print(f"{named.name} ({named.origin}{family})")
+    parameters = design.parameters()
     for symbol, value in design.as_dict().items():
-        parameter = PARAMETERS[symbol]
-        _print_row(symbol, value, parameter.unit, parameter.description)
-    broken = violations(design, rules)
+        _print_row(symbol, value, parameters[symbol].unit, parameters[symbol].description)
+    broken = design.violations(rules)
     if broken:
         print("cannot be built:", *broken, sep="\n  ")
         return
-    _print_row("L_T", design.L_T, "mm", "total length")
-    _print_row("N1, N2", f"{design.N1}, {design.N2}", "1", "helical and straight chambers")
-    _print_row("mode", design.mode, "", "deformation it is drawn for")
-    solid = body_volume(design, rules) + base_volume(design)
-    _print_row("solid", solid, "mm³", "volume of the elastomer")
-    _print_row("cavity", cavity_volume(design, rules), "mm³", "volume of the air")
+    for row in design.derived():
+        _print_row(*row)
+    volumes = design.volumes(rules)
+    if volumes is not None:
+        _print_row("solid", volumes.solid, "mm³", "volume of the elastomer")
+        _print_row("cavity", volumes.cavity, "mm³", "volume of the air")
 
 
 def print_result(record: Record) -> None:

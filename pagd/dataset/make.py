@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 import pandas as pd
 
-from pagd.catalogue import NamedDesign, read_designs
+from pagd.catalogue import NamedDesign, read_pneunets
 from pagd.config import packaged_tables
 from pagd.dataset.augmentation import interpolated_designs, jittered_designs
 from pagd.dataset.category import CATEGORIES, Category, category_of
@@ -123,7 +123,7 @@ def make_dataset(
         raise InputError(f"dataset.sampling = {sampling!r} must be one of {', '.join(METHODS)}.")
     sizes = _split(size, twisting_share, ("twisting", "bending"))
     if published is None:
-        published = list(read_designs(packaged_tables()).values())
+        published = list(read_pneunets(packaged_tables()).values())
     known, left_out = _usable(published, rules, sizes)
     plans = [_plan(c, sizes[c], known, augmented_share, interpolated_share) for c in CATEGORIES]
     parts = _drawn(plans, known, rules, sampling, jitter, seed)
@@ -182,12 +182,12 @@ def _usable(
     usable: dict[Design, NamedDesign] = {}
     left_out: dict[str, str] = {}
     for given in published:
-        named = replace(given, design=_plain(given.design))
-        reason = _reason_against(named.design, rules, sizes)
-        if reason is None and named.design in usable:
-            reason = f"is the same design as {usable[named.design].name}"
+        named = replace(given, design=_plain(given.pneunet))
+        reason = _reason_against(named.pneunet, rules, sizes)
+        if reason is None and named.pneunet in usable:
+            reason = f"is the same design as {usable[named.pneunet].name}"
         if reason is None:
-            usable[named.design] = named
+            usable[named.pneunet] = named
         else:
             left_out[named.name] = reason
     return list(usable.values()), left_out
@@ -221,7 +221,7 @@ def _plan(
     augmented_share: float,
     interpolated_share: float,
 ) -> _Plan:
-    known = tuple(n.design for n in named if n.design.mode == category)
+    known = tuple(n.pneunet for n in named if n.pneunet.mode == category)
     if size < len(known):
         raise InputError(
             f"dataset.size and dataset.twisting_share leave room for {size} {category} designs,"
@@ -243,7 +243,7 @@ def _drawn(
 ) -> dict[tuple[Category, str], Sampled]:
     """Draw every part of every category that has any design, each of a stream of its own."""
     sequences = np.random.SeedSequence(seed).spawn(len(plans) * len(PARTS))
-    taken = {named.design for named in known}
+    taken = {named.pneunet for named in known}
     parts: dict[tuple[Category, str], Sampled] = {}
     for (plan, part), sequence in zip(product(plans, PARTS), sequences, strict=True):
         count, rng = plan.counts[part], np.random.default_rng(sequence)
@@ -263,7 +263,7 @@ def _drawn(
 def _frame(
     known: Sequence[NamedDesign], parts: Mapping[tuple[Category, str], Sampled]
 ) -> pd.DataFrame:
-    rows = [(named.design, named.origin) for named in known]
+    rows = [(named.pneunet, named.origin) for named in known]
     rows += [(design, origin) for (_, origin), part in parts.items() for design in part.designs]
     return frame_of([design for design, _ in rows], _ids(len(rows)), [origin for _, origin in rows])
 

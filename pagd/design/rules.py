@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import NamedTuple, TypeVar
 
 from pagd.design.model import Design, as_number
 from pagd.errors import InputError, StageFailure, Status
 
-__all__ = ["Channel", "GeometryRules", "Limits", "Violation", "check", "violations"]
+__all__ = [
+    "Channel",
+    "GeometryRules",
+    "Limits",
+    "Violation",
+    "check",
+    "refuse",
+    "under",
+    "violations",
+]
 
 # 3.76 - 2 * 0.88 is not 2 in floating point, and no reader would understand the refusal.
 _ROUNDING = 1e-9
@@ -106,10 +115,19 @@ def check(design: Design, rules: GeometryRules) -> None:
     StageFailure
         With status ``invalid_geometry`` and every broken rule as the reason.
     """
-    broken = violations(design, rules)
+    refuse(violations(design, rules))
+
+
+def refuse(broken: Sequence[Violation]) -> None:
+    """Refuse a design that breaks any rule; see :func:`check`."""
     if broken:
         reason = "; ".join(str(violation) for violation in broken)
         raise StageFailure(Status.invalid_geometry, f"The design cannot be built: {reason}.")
+
+
+def under(size: float, limit: float) -> bool:
+    """Tell whether a size is under its limit by more than rounding explains."""
+    return size < limit - _ROUNDING
 
 
 def _not_finite(design: Design) -> Iterator[Violation]:
@@ -132,9 +150,9 @@ def _thicknesses(design: Design, limits: Limits) -> Iterator[Violation]:
     parts = {"t": "side walls", "t_h": "roof", "t_ab": "walls between chambers", "t_b": "base"}
     for key, part in parts.items():
         value = getattr(design, key)
-        if _under(value, limits.thickness):
+        if under(value, limits.thickness):
             yield Violation(key, value, f"the {part} must be at least {limits.thickness:g} mm")
-    if _under(design.t_b / 2, limits.paper_cover):
+    if under(design.t_b / 2, limits.paper_cover):
         rule = (
             f"the paper, at t_b / 2 = {design.t_b / 2:g} mm, must lie at least"
             f" {limits.paper_cover:g} mm from the faces of the base"
@@ -153,14 +171,14 @@ def _cavity(design: Design, rules: GeometryRules) -> Iterator[Violation]:
         ("H", design.H, "H - t_h", height, limits.cavity),
     )
     for key, value, formula, size, limit in sizes:
-        if _under(size, limit):
+        if under(size, limit):
             rule = f"the cavity, {formula} = {size:g} mm, must be at least {limit:g} mm"
             yield Violation(key, value, rule)
-    if _under(width, channel.width):
+    if under(width, channel.width):
         rule = f"the cavity, W - 2 t = {width:g} mm, must be as wide as the channel, "
         yield Violation("W", design.W, f"{rule}{channel.width:g} mm")
     lowest = channel.height + limits.cavity_above_channel
-    if _under(height, lowest):
+    if under(height, lowest):
         rule = f"the cavity, H - t_h = {height:g} mm, must be at least {lowest:g} mm high:"
         rule += f" {limits.cavity_above_channel:g} mm above the channel"
         yield Violation("H", design.H, rule)
@@ -169,14 +187,14 @@ def _cavity(design: Design, rules: GeometryRules) -> Iterator[Violation]:
 def _gap(design: Design, rules: GeometryRules) -> Iterator[Violation]:
     limits, channel = rules.limits, rules.channel
     width = design.t_n * _slant_cosine(design, limits)
-    if _under(width, limits.gap):
+    if under(width, limits.gap):
         rule = f"the gap, t_n cos(theta) = {width:g} mm, must be at least {limits.gap:g} mm"
         yield Violation("t_n", design.t_n, rule)
-    if _under(channel.roof, limits.thickness):
+    if under(channel.roof, limits.thickness):
         rule = f"the roof of the channel must be at least {limits.thickness:g} mm"
         yield Violation("channel.roof", channel.roof, rule)
     lowest = channel.gap_floor + limits.gap_depth
-    if _under(design.H, lowest):
+    if under(design.H, lowest):
         rule = f"must be at least {lowest:g} mm, {limits.gap_depth:g} mm above the gap floor"
         yield Violation("H", design.H, rule)
 
@@ -186,10 +204,6 @@ def _slant_cosine(design: Design, limits: Limits) -> float:
     if design.N1 <= 0 or not 0 <= design.theta <= limits.theta_deg:
         return 1.0
     return math.cos(math.radians(design.theta))
-
-
-def _under(size: float, limit: float) -> bool:
-    return size < limit - _ROUNDING
 
 
 def _section(section: type[_Section], name: str, mapping: Mapping[str, object]) -> _Section:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pagd.design import Design
+from pagd.catalogue import design_from
 from pagd.errors import InputError
+from pagd.families import Actuator
 from pagd.mesh.types import Mesh
 from pagd.record import RECORD_NAME, Record, read_record
 from pagd.states import read_states
@@ -118,14 +117,10 @@ def load_records(folder: Path) -> dict[str, Record]:
     return {s: read_record(p) for s, p in paths.items() if (p / RECORD_NAME).is_file()}
 
 
-def load_design(folder: Path) -> Design | None:
+def load_design(folder: Path) -> Actuator | None:
     """Return the design, or None where a user's own mesh was solved instead."""
     path = folder / "geometry" / "design.json"
-    if not path.is_file():
-        return None
-    content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    names = ("name", "origin")
-    return Design.from_mapping({k: v for k, v in content.items() if k not in names})
+    return design_from(str(path)).actuator if path.is_file() else None
 
 
 def stl_paths(folder: Path) -> tuple[Path, Path] | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from pagd.catalogue import NamedDesign, read_designs
+from pagd.catalogue import NamedDesign, read_pneunets
 from pagd.config import known_tables, part
 from pagd.dataset import make_dataset, read_frame, write_frame
 from pagd.errors import InputError
@@ -108,7 +108,7 @@ def record_of(name: str, stage: str, folder: Path, dataset: Path) -> Record:
 
 
 def _known(config: Mapping[str, Any]) -> list[NamedDesign]:
-    return list(read_designs(known_tables(config)).values())
+    return list(read_pneunets(known_tables(config)).values())
 
 
 def _file(dataset: Path) -> Path:

@@ -104,7 +104,7 @@ def gated(named: NamedDesign, config: Mapping[str, Any], materials: Materials) -
     held = config["solve"]["blocked_force"]
     found = analyse(named, config, materials, pieces=False)
     for better in (partial(analyse, pieces=True), full_analysis):
-        doubt = doubt_of(found.row, named.design, held)
+        doubt = doubt_of(found.row, named.pneunet, held)
         if doubt is None:
             break
         before = found

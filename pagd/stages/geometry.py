@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pagd.catalogue import NamedDesign, design_from
-from pagd.design import GeometryRules, base_volume, body_volume, cavity_volume, check
+from pagd.design import GeometryRules
 from pagd.geometry import openscad_version, render, write_design_scad
 from pagd.record import Meter, Record
 from pagd.stages.stage import Outcome, run_stage
@@ -34,7 +34,7 @@ def run(named: NamedDesign, out: Path, config: Mapping[str, Any]) -> Record:
     rules = rules_of(config)
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
-        check(named.design, rules)
+        named.actuator.check(rules)
         write_design_scad(named.design, rules, folder / "design.scad")
         with meter.part("openscad"):
             _render_all(named, rules, folder, config["geometry"]["time_limit_s"])
@@ -75,7 +75,7 @@ def _in_words(row: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _render_all(named: NamedDesign, rules: GeometryRules, folder: Path, time_limit: float) -> None:
-    halves = (False, True) if named.design.is_straight else (False,)
+    halves = (False, True) if named.actuator.is_symmetric else (False,)
     for half in halves:
         for part in ("body", "base"):
             path = folder / f"{part}{'_half' if half else ''}.stl"
@@ -83,16 +83,12 @@ def _render_all(named: NamedDesign, rules: GeometryRules, folder: Path, time_lim
 
 
 def _figures(named: NamedDesign, rules: GeometryRules) -> dict[str, Any]:
-    design = named.design
-    body, base = body_volume(design, rules), base_volume(design)
-    return {
-        "L_T_mm": design.L_T,
-        "N1": design.N1,
-        "N2": design.N2,
-        "mode": design.mode,
-        "cross_section": design.cross_section,
-        "body_volume_mm3": body,
-        "base_volume_mm3": base,
-        "solid_volume_mm3": body + base,
-        "cavity_volume_mm3": cavity_volume(design, rules),
+    volumes = named.actuator.volumes(rules)
+    if volumes is None:
+        return named.actuator.figures()
+    return named.actuator.figures() | {
+        "body_volume_mm3": volumes.body,
+        "base_volume_mm3": volumes.base,
+        "solid_volume_mm3": volumes.solid,
+        "cavity_volume_mm3": volumes.cavity,
     }

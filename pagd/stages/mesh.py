@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from pagd.design import Channel
+from pagd.design import Channel, Design
 from pagd.errors import InputError, StageFailure, Status
 from pagd.inventory import read_sound_record
-from pagd.mesh.chamber_row import chamber_row
 from pagd.mesh.checks import EXTENT_MM
 from pagd.mesh.joining import Complex, Patch, join
 from pagd.mesh.msh import write_msh
@@ -24,7 +23,7 @@ from pagd.mesh.surfaces import SurfacePair
 from pagd.mesh.topology import components, edge_neighbours
 from pagd.mesh.types import Mesh
 from pagd.record import Meter, Record, read_record
-from pagd.stages.geometry import read_design
+from pagd.stages.geometry import read_design, rules_of
 from pagd.stages.stage import Outcome, run_stage
 
 __all__ = ["MESH_NAME", "OwnSurfaces", "identity", "mesh_file", "name_of", "run", "run_own"]
@@ -69,7 +68,8 @@ def run(geometry: Path, repair: Path, out: Path, config: Mapping[str, Any]) -> R
         half = config["mesh"]["half_model"] and (repair / "body_half.stl").is_file()
         ending = "_half.stl" if half else ".stl"
         pair = SurfacePair.from_stl(repair / f"body{ending}", repair / f"base{ending}", half)
-        volume = drawn.figures["solid_volume_mm3"] / (2 if half else 1)
+        volume = drawn.figures.get("solid_volume_mm3")
+        volume = volume / 2 if volume is not None and half else volume
         blocks = partial(_structured, geometry, config["mesh"]["block_mm"], half)
         _mesh(pair, volume, folder, outcome, config["mesh"], blocks)
 
@@ -88,14 +88,16 @@ def _row(geometry: Path, drawn: Record) -> dict[str, Any]:
     """What row of chambers is meshed, for stages that know its parts; nothing if it failed."""
     if drawn.status is not Status.ok:
         return {}
-    design = read_design(geometry).design.as_dict()
-    return {"design": design, "channel": drawn.configuration["channel"]}
+    named = read_design(geometry)
+    if not isinstance(named.design, Design):
+        return {"design": {"family": named.design.family, **named.design.as_dict()}}
+    return {"design": named.design.as_dict(), "channel": drawn.configuration["channel"]}
 
 
 def _structured(geometry: Path, size: float, half: bool) -> Mesh:
-    """The row of chambers that the stage geometry has drawn, in blocks."""
-    channel = channel_of(read_record(geometry).configuration["channel"])
-    return chamber_row(read_design(geometry).design, channel, size, half=half)
+    """What the stage geometry has drawn, in blocks."""
+    rules = rules_of(read_record(geometry).configuration)
+    return read_design(geometry).actuator.blocks(rules, size, half=half)
 
 
 def channel_of(lengths: Mapping[str, float]) -> Channel:

@@ -25,13 +25,12 @@ from pagd.metrics import (
     chamber_columns,
     first_contact_pressure,
     is_still,
-    kinds_of,
     measure,
     performance,
     strain_columns,
 )
 from pagd.record import Meter, Record
-from pagd.sections import Stations, stations_of
+from pagd.sections import Stations
 from pagd.stages.geometry import read_design
 from pagd.stages.mesh import identity, mesh_file
 from pagd.stages.sections import even_stations_of, sections_of
@@ -125,7 +124,7 @@ def _described(geometry: Path | None) -> dict[str, Any]:
     if geometry is None:
         return {}
     named = read_design(geometry)
-    return {"name": named.name, "origin": named.origin, "mode": named.design.mode}
+    return {"name": named.name, "origin": named.origin, "mode": named.actuator.mode}
 
 
 def _cost(upstream: list[Record]) -> dict[str, float]:
@@ -203,7 +202,7 @@ def _blocked(solve: Path, trajectory: Trajectory) -> Columns:
 
 
 def _kinds(geometry: Path | None) -> list[Kind] | None:
-    return kinds_of(read_design(geometry).design) if geometry else None
+    return read_design(geometry).actuator.kinds() if geometry else None
 
 
 def _write(
@@ -244,9 +243,8 @@ def _trajectory(folders: Folders, solved: Record, sections: int) -> Trajectory:
 
 
 def _stations(geometry: Path | None, mesh: Mesh, count: int) -> Stations:
-    if geometry is not None:
-        return stations_of(read_design(geometry).design)
-    return even_stations_of(mesh, count)
+    own = read_design(geometry).actuator.stations() if geometry else None
+    return own or even_stations_of(mesh, count)
 
 
 def _refuse_still(outcome: Outcome, last: Mapping[str, Any], thresholds: Thresholds) -> None:

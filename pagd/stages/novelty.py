@@ -22,19 +22,20 @@ def novelty_of(geometries: Sequence[Path], dataset: Path) -> dict[str, float]:
     Parameters
     ----------
     geometries
-        Folders of the stage geometry. Those without a design, and designs whose numbers say
-        nothing (not finite, no chamber), are left out.
+        Folders of the stage geometry. Those without a design, designs that are no pneu-nets, and
+        designs whose numbers say nothing (not finite, no chamber), are left out.
     dataset
         Folder of the stage dataset.
     """
     drawn = [read_design(folder) for folder in geometries if (folder / DESIGN_NAME).is_file()]
-    found = [named for named in drawn if _is_vector(named.design)]
+    # Designs of other families have no place among the training designs.
+    found = [(n, n.design) for n in drawn if isinstance(n.design, Design) and _is_vector(n.design)]
     if not found:
         return {}
     training = load_dataset(dataset)
     encoder = Encoder().fit(training)
-    names = [named.name for named in found]
-    frame = frame_of([named.design for named in found], names, [n.origin for n in found])
+    names = [named.name for named, _ in found]
+    frame = frame_of([design for _, design in found], names, [n.origin for n, _ in found])
     distances = nearest_distances(encoder.transform(frame), encoder.transform(training))
     return dict(zip(names, distances.tolist(), strict=True))
 

@@ -88,7 +88,7 @@ def analyse(
         Whether chambers unlike their neighbours are solved too.
     """
     begun, wall = time.process_time(), time.perf_counter()
-    design, rules = named.design, rules_of(config)
+    design, rules = named.pneunet, rules_of(config)
     row: dict[str, Any] = {
         "design_id": named.name,
         "name": named.name,
@@ -117,7 +117,7 @@ def _analysed(
     *,
     pieces: bool,
 ) -> tuple[Columns, Columns, Columns]:
-    design = named.design
+    design = named.pneunet
     _refuse_invalid(design, rules)
     settings = dict(config["solve"])
     limit = settings.pop("bending_limit_deg")
@@ -193,7 +193,7 @@ def _measured(
     settings = dict(config["metrics"])
     ramp = settings.pop("pressure_ramp_kPa_per_s")
     thresholds = Thresholds(**settings)
-    design = named.design
+    design = named.pneunet
     history = row_history(reduced, cavity_volume(design, rules))
     measures: Columns = dict(
         performance(trajectory, history, solid_volume(design, rules), thresholds)

@@ -357,7 +357,7 @@ def _safely(
             return gated(named, config, materials)
         found = analyse(named, config, materials, pieces=fidelity == PIECES)
         held = config["solve"]["blocked_force"]
-        found.row["doubt"] = doubt_of(found.row, named.design, held)
+        found.row["doubt"] = doubt_of(found.row, named.pneunet, held)
         return found
     except FAULTS as error:
         told = f"A fault of the analysis: {type(error).__name__}: {error}"
@@ -370,7 +370,7 @@ def _row_of(named: NamedDesign, fidelity: str, status: Status, told: str) -> dic
         "design_id": named.name,
         "name": named.name,
         "origin": named.origin,
-        "mode": named.design.mode,
+        "mode": named.pneunet.mode,
         "fidelity": CELLS if fidelity == GATED else fidelity,
         "status": status.value,
         "reason": told,

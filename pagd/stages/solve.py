@@ -188,7 +188,8 @@ def _guide(
     """First guesses by the parts of the row that the mesh is of; none if it is of no row."""
     made = next((record.configuration for record in upstream), {})
     in_blocks = any(record.figures.get("mesher") == STRUCTURED for record in upstream)
-    if not in_blocks or "design" not in made or any(both[2].gravity_m_s2):
+    # A channel is what a row of chambers has; other families have no parts that are known.
+    if not in_blocks or "channel" not in made or any(both[2].gravity_m_s2):
         return None
     if both[2].element in ("taylor_hood", "element_pressure"):
         return None
