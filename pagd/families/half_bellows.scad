@@ -14,20 +14,20 @@
 // Number of convolutions
 N = 6; // [1:1:30]
 // Pitch of the convolutions, along the axis
-q = 10; // [4:0.01:30]
+q = 11; // [4:0.01:30]
 // Height of a convolution, crest above root
 w = 4; // [1:0.01:20]
 // Outer radius at the roots
-R = 6; // [2:0.01:30]
+R = 7; // [2:0.01:30]
 // Length of a crest, outside
-L_c = 4; // [1:0.01:20]
+L_c = 5; // [1:0.01:20]
 // Length of a root, outside
 L_r = 2; // [0.5:0.01:20]
 
 /* [Walls] */
 
 // Wall of the convolutions, normal to it
-t = 1.5; // [0.5:0.01:6]
+t = 2; // [0.5:0.01:6]
 // Walls at both ends, along the axis
 t_e = 2; // [0.5:0.01:10]
 // Base, with the paper half-way down

@@ -104,6 +104,11 @@ class Actuator(ABC):
         """The deformation that the design is drawn for; None if none is."""
         return None
 
+    @classmethod
+    def digest(cls) -> str | None:
+        """Return what changes with the family's files; None if pagd's own version tells."""
+        return None
+
     def check(self, rules: GeometryRules) -> None:
         """Refuse a design that cannot be built.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
 import math
 from abc import abstractmethod
@@ -15,6 +16,7 @@ from pagd.design.model import as_number
 from pagd.errors import InputError
 from pagd.families.interface import Actuator
 from pagd.families.parameters import read_parameters
+from pagd.files import must_exist
 
 if TYPE_CHECKING:
     from typing import Any, Self
@@ -62,6 +64,16 @@ class TabledActuator(Actuator):
         if problems:
             raise InputError("Unusable design: " + "; ".join(problems) + ".")
         return cls(values)
+
+    @classmethod
+    def digest(cls) -> str:
+        """Return the first 16 hexadecimal digits of the SHA-256 of the three files."""
+        files = (_beside(cls, ending) for ending in (".py", ".csv", ".scad"))
+        found = hashlib.sha256()
+        for file in files:
+            must_exist(file)
+            found.update(file.read_bytes())
+        return found.hexdigest()[:16]
 
     def __getitem__(self, symbol: str) -> float:
         return self.values[symbol]

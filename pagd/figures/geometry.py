@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from pagd.design import Design
 from pagd.errors import InputError
-from pagd.families import Actuator, PneuNet
+from pagd.families import Actuator, PneuNet, actuator_of
 from pagd.figures.details import draw_details
 from pagd.figures.load import load_design, stl_paths
 from pagd.figures.outline import draw_section
@@ -44,12 +45,13 @@ def draw_geometry(design_folder: Path, out: Path) -> None:
 
 
 def geometry_figure(
-    title: str, body: pv.PolyData, base: pv.PolyData, design: Actuator | None
+    title: str, body: pv.PolyData, base: pv.PolyData, of: Design | Actuator | None
 ) -> Figure:
     """Return the picture of a body above the paper plane and a base below it (mm).
 
     Without a design, as for surfaces of one's own, the dimensions are left out.
     """
+    design = actuator_of(of) if of else None
     length, width, height = (body.bounds[i + 1] - body.bounds[i] for i in (0, 2, 4))
     # Plan and side view on one scale: across the whole width, unless the body is short.
     scale = min(_WIDEST / length, _HIGHEST / max(width, height))

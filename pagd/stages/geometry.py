@@ -48,6 +48,7 @@ def run(named: NamedDesign, out: Path, config: Mapping[str, Any]) -> Record:
         configuration={
             "design": _in_words(json.loads(named.as_json())),
             **{key: config[key] for key in ("channel", "limits", "geometry")},
+            **_family(named),
         },
         libraries={"openscad": openscad_version()},
         given={DESIGN_NAME: named.as_json() + "\n"},
@@ -72,6 +73,12 @@ def _in_words(row: Mapping[str, Any]) -> dict[str, Any]:
     # JSON has no word for a number that is not finite, and such a design has a record too.
     odd = {key for key, value in row.items() if isinstance(value, float) and not isfinite(value)}
     return {key: str(value) if key in odd else value for key, value in row.items()}
+
+
+def _family(named: NamedDesign) -> dict[str, str]:
+    """Return what files made the geometry, where a family has its own."""
+    digest = named.actuator.digest()
+    return {} if digest is None else {"family_sha256": digest}
 
 
 def _render_all(named: NamedDesign, rules: GeometryRules, folder: Path, time_limit: float) -> None:

@@ -10,7 +10,7 @@ from shlex import quote
 
 from snakemake.exceptions import WorkflowError
 
-from pagd.catalogue import read_designs
+from pagd.catalogue import read_designs, read_pneunets
 from pagd.config import (
     check_study,
     checked,
@@ -41,7 +41,7 @@ def read_inputs(config, check):
         if check:
             check_study(whole, "configuration")
         designs = read_designs(whole["designs"], checked=check)
-        known = read_designs(known_tables(whole), checked=check)
+        known = read_pneunets(known_tables(whole), checked=check)
         materials = {
             role: material_as_json(whole["material_file"], whole[role], role)
             for role in ("material", "paper")
@@ -185,15 +185,26 @@ def selection_of_design(wildcards):
     return [] if wildcards.design in TABLES else ancient(rules.select.output.selection)
 
 
-def design_row(wildcards):
-    """The design's own row: a change of it, and of no other row, runs the design again."""
-    name = wildcards.design
+def design_named(name):
+    """The design of the tables, or among those selected, of that name."""
     designs = TABLES if name in TABLES else selected_designs()
     if name not in designs:
         # Until the checkpoint is done, Snakemake takes this for "not known yet".
         checkpoints.select.get()
         raise WorkflowError(f"No design is named '{name}': neither in the tables nor selected.")
-    return designs[name].as_json()
+    return designs[name]
+
+
+def design_row(wildcards):
+    """The design's own row: a change of it, and of no other row, runs the design again."""
+    return design_named(wildcards.design).as_json()
+
+
+def versions_of_geometry(wildcards):
+    """The versions of the stages that draw and mesh, and of a family that has files of its own."""
+    versions = [STAGE_VERSIONS[stage] for stage in ("geometry", "repair", "mesh")]
+    digest = design_named(wildcards.design).actuator.digest()
+    return versions if digest is None else [*versions, digest]
 
 
 def config_of(stage):

@@ -27,7 +27,7 @@ rule prepare:
         tries_left=tries_left,
         tmpdir=None,
     params:
-        versions=[STAGE_VERSIONS[stage] for stage in ("geometry", "repair", "mesh")],
+        versions=versions_of_geometry,
         design=design_row,
         geometry=config_of("geometry"),
         repair=config_of("repair"),

@@ -31,7 +31,9 @@ This page is made from `workflow/schemas/` by `python workflow/scripts/config_re
 TABLES = """\
 ## Tables of designs
 
-CSV files with these columns, one row a design:
+CSV files with these columns, one row a design. A column `family` names what is no pneu-net, such as
+`half_bellows`: such a row has name, origin, source, notes and the parameters of its family instead
+(`docs/extending.md`), and leaves the others empty.
 """
 
 
