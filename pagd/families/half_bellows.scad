@@ -59,24 +59,37 @@ assert(run >= 0, "q: crest and root are longer than the pitch");
 assert(R > t, "R: the wall leaves no room for air at the roots");
 assert(L_c > 2 * shift, "L_c: the wall leaves no room for air at the crests");
 
-// Corners [radius, x] of a convolution that begins at x: up a flank, and down the other. Outside
+// Corners [x, radius] of a convolution that begins at x: up a flank, and down the other. Outside
 // with nothing taken off; inside with the wall `off` and the corners' shift `s`.
 function convolution(x, off, s) = [
-    [R - off, x + L_r / 2 + s], [R + w - off, x + L_r / 2 + run + s],
-    [R + w - off, x + q - L_r / 2 - run - s], [R - off, x + q - L_r / 2 - s]
+    [x + L_r / 2 + s, R - off], [x + L_r / 2 + run + s, R + w - off],
+    [x + q - L_r / 2 - run - s, R + w - off], [x + q - L_r / 2 - s, R - off]
 ];
 function profile(from, to, off, s) = concat(
-    [[0, from], [R - off, from]],
-    [for (i = [0:N - 1]) each convolution(t_e + i * q, off, s)],
-    [[R - off, to], [0, to]]
+    [[from, R - off]], [for (i = [0:N - 1]) each convolution(t_e + i * q, off, s)], [[to, R - off]]
 );
 
 
 // ---- The parts ---------------------------------------------------------------------------
 
-// The half z > 0 of what a profile of points [radius, x] gives when it turns about the x axis.
-module revolved(points) {
-    rotate([90, 0, 90]) rotate_extrude(angle = 180, $fn = 2 * facets) polygon(points);
+// The half z > 0 of what a profile of corners [x, radius] gives when it turns about the x axis.
+// Every corner is stated, so that faces meant to lie in one plane do so to the last digit:
+// rotate_extrude() would round the profile.
+module revolved(corners) {
+    m = len(corners) - 1;
+    n = facets;
+    function at(i, k) = i * (n + 1) + k;
+    polyhedron(
+        points = [for (c = corners) for (k = [0:n])
+            [c.x, c.y * cos(180 * k / n), c.y * sin(180 * k / n)]],
+        faces = concat(
+            [[for (k = [0:n]) at(0, k)]],
+            [[for (k = [n:-1:0]) at(m, k)]],
+            [concat([for (i = [0:m]) at(i, n)], [for (i = [m:-1:0]) at(i, 0)])],
+            [for (i = [0:m - 1]) for (k = [0:n - 1])
+                [at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)]]
+        )
+    );
 }
 
 module slab(from, to) {
