@@ -17,7 +17,7 @@ import yaml
 from pagd.record import read_record
 from pagd.tables import read_rows, units
 
-from .conftest import ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project, undeclared_tables
+from .conftest import HEAD, ROOT, SETTINGS, SLANTED, STRAIGHT, THIN, Project, undeclared_tables
 
 STAGES = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
 DESIGN_RULES = ("prepare", "solve", "metrics", "figures")
@@ -210,6 +210,30 @@ def test_a_changed_parameter_runs_that_design_only(changed: Project) -> None:
 def test_another_order_or_a_new_design_runs_no_other(changed: Project) -> None:
     changed.write(SLANTED, THIN, STRAIGHT, STRAIGHT.replace("straight", "new"))
     assert changed.pending() == of_design("new") | GATHERED
+
+
+def test_designs_of_another_family_join_and_run_no_other(changed: Project) -> None:
+    """In one table, in which rows leave empty what their family does not have."""
+    rows = [HEAD.replace("name,", "name,family,") + ",q,w,R,L_c,L_r,t_e,b_f"]
+    rows += [row.replace(",", ",,", 1) + 7 * "," for row in (STRAIGHT, SLANTED, THIN)]
+    rows += ["bellows,half_bellows,,,,2,,,,3,2,,,11,4,7,5,2,2,1"]
+    table = changed.folder / "config" / "designs.csv"
+    table.write_text("\n".join([*rows, ""]))
+    assert changed.pending() == of_design("bellows") | GATHERED
+    # And without any pneu-net beside them.
+    table.write_text("\n".join([rows[0], rows[-1], ""]))
+    answer = changed.snakemake("--dry-run")
+    assert answer.returncode == 0, said(answer)
+    assert re.search(r"^prepare +1$", said(answer), re.MULTILINE)
+
+
+def test_another_family_has_no_place_among_known_designs(changed: Project) -> None:
+    config, known = changed.folder / "config", "name,family,N,q,w,R,L_c,L_r,t,t_e,t_b,b_f"
+    (config / "known.csv").write_text(f"{known}\nbellows,half_bellows,2,11,4,7,5,2,2,2,3,1\n")
+    changed.write(STRAIGHT, dataset={"known": {"own": "config/known.csv"}})
+    answer = changed.snakemake("--dry-run")
+    assert answer.returncode != 0
+    assert "design bellows: family = 'half_bellows' must be pneunet here" in said(answer)
 
 
 def test_a_changed_picture_runs_pictures_only(changed: Project) -> None:

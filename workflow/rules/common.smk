@@ -200,11 +200,14 @@ def design_row(wildcards):
     return design_named(wildcards.design).as_json()
 
 
-def versions_of_geometry(wildcards):
-    """The versions of the stages that draw and mesh, and of a family that has files of its own."""
-    versions = [STAGE_VERSIONS[stage] for stage in ("geometry", "repair", "mesh")]
-    digest = design_named(wildcards.design).actuator.digest()
-    return versions if digest is None else [*versions, digest]
+def and_family(versions):
+    """Versions of stages, and that of the design's family if it has files of its own."""
+
+    def both(wildcards):
+        digest = design_named(wildcards.design).actuator.digest()
+        return versions if digest is None else [*versions, digest]
+
+    return both
 
 
 def config_of(stage):

@@ -27,7 +27,7 @@ rule prepare:
         tries_left=tries_left,
         tmpdir=None,
     params:
-        versions=versions_of_geometry,
+        versions=and_family([STAGE_VERSIONS[part] for part in ("geometry", "repair", "mesh")]),
         design=design_row,
         geometry=config_of("geometry"),
         repair=config_of("repair"),
