@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pagd.design import GeometryRules, Limits, Mode, Violation
+from pagd.design import GeometryRules, Limits, Violation
 from pagd.design.rules import under
 from pagd.families.interface import Derived, Volumes
 from pagd.families.tabled import TabledActuator
@@ -47,11 +47,6 @@ class HalfBellows(TabledActuator):
     def is_symmetric(self) -> bool:
         """It always is."""
         return True
-
-    @property
-    def mode(self) -> Mode:
-        """It bends."""
-        return "bending"
 
     @property
     def run(self) -> float:

@@ -100,9 +100,12 @@ class Actuator(ABC):
         return name_of(type(self))
 
     @property
-    def mode(self) -> Mode | None:
-        """The deformation that the design is drawn for; None if none is."""
-        return None
+    def mode(self) -> Mode:
+        """The deformation that the design is drawn for.
+
+        A symmetric one can only bend. Others twist as well, unless a family tells more of them.
+        """
+        return "bending" if self.is_symmetric else "twisting"
 
     @classmethod
     def digest(cls) -> str | None:

@@ -226,7 +226,7 @@ def test_a_family_of_ones_own_needs_three_files(own: Path, tmp_path: Path) -> No
     named = design_from(json.dumps(BAR))
     assert named.actuator.family == "hollow_bar:HollowBar"
     assert named.actuator.volumes(RULES) is None
-    assert named.actuator.mode is None
+    assert named.actuator.mode == "bending"
     path = tmp_path / "design.scad"
     write_design_scad(named.actuator, RULES, path)
     assert "a = 8.0; // [4:0.1:20]" in path.read_text()

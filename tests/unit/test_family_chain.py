@@ -113,7 +113,7 @@ def test_a_family_of_ones_own_goes_through_all_stages(own: None, tmp_path: Path)
     assert records["geometry"].figures == {
         "family": "hollow_bar:HollowBar",
         "L_T_mm": 30.0,
-        "mode": None,
+        "mode": "bending",
     }
     attempts = records["mesh"].figures["attempts"]
     assert attempts[0]["reason"] == "The family hollow_bar:HollowBar has no mesher of its own."

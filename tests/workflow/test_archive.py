@@ -21,6 +21,7 @@ import yaml
 from datacite import schema45
 
 from pagd.archive.checks import CHECKS, check_tables
+from pagd.archive.collecting import collected
 from pagd.archive.packing import pack, unpacked
 from pagd.archive.pictures import sample_of
 from pagd.archive.reading import read_tables
@@ -73,6 +74,22 @@ def archive(simulated: Project, tmp_path_factory: pytest.TempPathFactory) -> Pat
 def frames(archive: Path) -> dict[str, pd.DataFrame]:
     """Its tables."""
     return read_tables(archive)
+
+
+def test_designs_of_other_families_are_left_out_and_told(
+    simulated: Project, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    design = {"family": "half_bellows", "N": 2, "q": 11, "w": 4, "R": 7, "L_c": 5, "L_r": 2}
+    design |= {"name": "bellows", "t": 2, "t_e": 2, "t_b": 3, "b_f": 1}
+    for stage, name, text in (
+        ("geometry", "design.json", json.dumps(design)),
+        ("metrics", "record.json", "is not read"),
+    ):
+        (tmp_path / "bellows" / stage).mkdir(parents=True)
+        (tmp_path / "bellows" / stage / name).write_text(text)
+    found = collected(simulated / "", [tmp_path])
+    assert list(found.folders.values()) == list(collected(simulated / "").folders.values())
+    assert f"{tmp_path / 'bellows'}: left out, as a half_bellows" in caplog.text
 
 
 def test_every_design_is_there_with_every_analysis(
