@@ -19,7 +19,7 @@ from pagd.families import PNEUNET, Actuator, PneuNet, actuator_of, family_named
 from pagd.families.parameters import schema_of
 from pagd.validation import check, check_by, check_each
 
-__all__ = ["NamedDesign", "design_from", "read_designs", "read_pneunets"]
+__all__ = ["NamedDesign", "design_from", "name_from", "read_designs", "read_pneunets"]
 
 
 # A tenth of the smallest side of the sampling box, and more than the largest one is in metres.
@@ -79,12 +79,16 @@ def design_from(source: str) -> NamedDesign:
         If it is neither, or describes no design.
     """
     given, file = read_document(source, "design")
-    # A file's name serves as the name of a design that has none.
-    name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(file).stem).strip("-") or "design"
+    name = name_from(Path(file))
     where = f"design {file or given.get('name', name)}"
     row = _with_family(where, {"name": name, "origin": "own", **given})
     _check_row(where, row)
     return NamedDesign.from_row(row)
+
+
+def name_from(file: Path) -> str:
+    """Return the name that a design without one has from its file."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", file.stem).strip("-") or "design"
 
 
 def read_designs(tables: Mapping[str, str], *, checked: bool = True) -> dict[str, NamedDesign]:

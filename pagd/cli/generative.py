@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from pagd.cli.options import checked_threads, config_of
+from pagd.errors import InputError
 
-__all__ = ["dataset", "diversity", "embed", "generate", "screen", "select"]
+__all__ = ["dataset", "diversity", "embed", "generate", "sample", "screen", "select"]
 
 
 def dataset(options: Namespace) -> int:
@@ -121,6 +122,32 @@ def screen(options: Namespace) -> int:
         f"{found['designs']} designs ({_listed(found['statuses'])}) in {options.out}, "
         f"{found['cpu_s_median']:.2f} core-s each in the median."
     )
+    return 0
+
+
+def sample(options: Namespace) -> int:
+    """Write a table of random designs of a family."""
+    import numpy as np
+
+    from pagd.catalogue import name_from
+    from pagd.families import family_named
+    from pagd.families import sampling as library
+    from pagd.files import write_text
+    from pagd.stages.geometry import rules_of
+
+    if options.out.suffix != ".csv":
+        raise InputError(f"--out = {options.out} must end in .csv.")
+    if options.seed < 0:
+        raise InputError(f"--seed = {options.seed} must be at least 0.")
+    designs = library.sample(
+        family_named(options.family),
+        options.designs,
+        rules_of(config_of(options)),
+        np.random.default_rng(options.seed),
+        options.sampling,
+    )
+    write_text(options.out, library.table_of(designs, f"{name_from(options.out)}_"))
+    print(f"{len(designs)} designs in {options.out}")
     return 0
 
 

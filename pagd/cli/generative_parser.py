@@ -28,6 +28,7 @@ def add_generative(commands: Any) -> None:
     _add_diversity(commands)
     _add_select(commands)
     _add_screen(commands)
+    _add_sample(commands)
 
 
 def _add_dataset(commands: Any) -> None:
@@ -135,6 +136,28 @@ def _add_screen(commands: Any) -> None:
     )
     add_materials(command)
     _add_set_options(command)
+
+
+def _add_sample(commands: Any) -> None:
+    command = add_command(
+        commands, "sample", "generative:sample", "random designs of a family, as a table"
+    )
+    command.add_argument(
+        "--family", required=True, metavar="NAME", help="half_bellows, pneunet or module:class"
+    )
+    command.add_argument(
+        "-n", "--designs", type=int, default=100, metavar="N", help="how many (default: 100)"
+    )
+    command.add_argument("--seed", type=int, default=1, metavar="N", help="of all draws (1)")
+    command.add_argument(
+        "--sampling",
+        default="random",
+        metavar="NAME",
+        help="random, sobol or latin_hypercube (default: random)",
+    )
+    command.add_argument("--out", type=Path, required=True, metavar="FILE", help="CSV to write")
+    add_config(command)
+    add_verbose(command)
 
 
 def _part(text: str) -> tuple[int, int]:

@@ -19,6 +19,7 @@ from pagd.errors import InputError, StageFailure
 from pagd.families import FAMILIES, PneuNet, actuator_of, family_named, name_of
 from pagd.families.half_bellows import HalfBellows
 from pagd.families.parameters import read_parameters
+from pagd.families.sampling import sample
 from pagd.geometry import Part, render, write_design_scad
 from pagd.record import read_record
 from pagd.repair import repair
@@ -296,6 +297,56 @@ def test_a_family_that_cannot_be_built_has_a_record(tmp_path: Path) -> None:
     assert record.status == "invalid_geometry"
     assert record.configuration["design"]["family"] == "half_bellows"
     assert record.configuration["family_sha256"] == HalfBellows.digest()
+
+
+def sampled(out: Path, *more: str) -> dict[str, NamedDesign]:
+    assert main(["sample", "--family", "half_bellows", "-n", "12", "--out", str(out), *more]) == 0
+    return read_designs({"own": str(out)})
+
+
+def test_a_sample_is_valid_and_the_same_for_the_same_seed(tmp_path: Path) -> None:
+    found = sampled(tmp_path / "some.csv")
+    assert list(found) == [f"some_{i:02d}" for i in range(1, 13)]
+    box = HalfBellows.parameters()
+    for named in found.values():
+        values = named.actuator.as_dict()
+        assert not named.actuator.violations(RULES)
+        assert all(box[key].low <= value <= box[key].high for key, value in values.items())
+        assert all(round(value, 2) == value for value in values.values())
+    again = sampled(tmp_path / "again.csv", "--seed", "1")
+    assert [n.design for n in again.values()] == [n.design for n in found.values()]
+    other = sampled(tmp_path / "other.csv", "--seed", "2", "--sampling", "sobol")
+    assert not {n.design for n in other.values()} & {n.design for n in found.values()}
+
+
+def test_whole_numbers_are_equally_likely_in_a_sample() -> None:
+    found = sample(HalfBellows, 2000, RULES, np.random.default_rng(5))
+    counts = np.bincount([int(design.as_dict()["N"]) for design in found])[4:]
+    assert len(counts) == 7
+    assert counts.min() > 0.8 * counts.mean()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--family", "x"], "pagd: family = 'x': must be pneunet or half_bellows"),
+        (["--family", "half_bellows", "-n", "0"], "pagd: designs = 0 must be at least 1."),
+        (["--family", "half_bellows", "--sampling", "grid"], "pagd: sampling = 'grid' must be one"),
+        (["--family", "half_bellows", "--seed", "-1"], "pagd: --seed = -1 must be at least 0."),
+        (
+            ["--family", "half_bellows", "--config", '{"limits": {"thickness_mm": 9}}'],
+            "pagd: family = 'half_bellows': only 0 of ",
+        ),
+    ],
+)
+def test_what_cannot_be_sampled_is_told(
+    arguments: list[str], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["sample", *arguments, "--out", str(tmp_path / "a.csv")]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(words)
+    assert told.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_design_knows_what_it_is() -> None:
