@@ -1,4 +1,4 @@
-"""A family of a user's own, as three files that are no part of pagd, and designs of families."""
+"""A family of a user's own, the three files of docs/extending.md, and designs of families."""
 
 from __future__ import annotations
 
@@ -13,60 +13,16 @@ BELLOWS = {
 #: A bar with a square channel along it.
 BAR = {"name": "bar", "family": "hollow_bar:HollowBar", "a": 8.0, "L": 30.0, "wall": 2.0}
 
-TABLE = """\
-symbol,unit,low,high,whole,description
-a,mm,4,20,no,side of the bar
-L,mm,20,60,no,length of the bar
-wall,mm,1,4,no,thickness of every wall
-"""
 
-MODEL = """\
-a = 10; // [4:0.1:20]
-L = 40; // [20:1:60]
-wall = 2; // [1:0.1:4]
-part = "body";
-half = false;
-
-module body() {
-    difference() {
-        translate([0, -a / 2, 0]) cube([L, a, a]);
-        translate([wall, wall - a / 2, wall]) cube([L - 2 * wall, a - 2 * wall, a - 2 * wall]);
-    }
-}
-module base() { translate([0, -a / 2, -wall]) cube([L, a, wall]); }
-
-intersection() {
-    if (part == "body") body(); else base();
-    translate([-L, half ? 0 : -2 * a, -2 * a]) cube([3 * L, 4 * a, 4 * a]);
-}
-"""
-
-MODULE = '''\
-"""A bar with a square channel: thin roof, paper below."""
-
-from pagd.design import Violation
-from pagd.families import TabledActuator
+def _example(language: str) -> str:
+    """The one block of a language among the examples of a family in the documentation."""
+    page = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
+    section = page.partition("## A family of actuators")[2].partition("\n## ")[0]
+    return section.partition(f"```{language}\n")[2].partition("```")[0]
 
 
-class HollowBar(TabledActuator):
-    """A hollow bar on a base as thick as its walls."""
-
-    @property
-    def L_T(self):
-        """Total length, mm."""
-        return self["L"]
-
-    @property
-    def is_symmetric(self):
-        """It always is."""
-        return True
-
-    def broken(self, rules):
-        """Yield what is broken: the channel must have room."""
-        room = self["a"] - 2 * self["wall"]
-        if room < rules.limits.cavity:
-            yield Violation("wall", self["wall"], f"leaves {room:g} mm for the channel")
-'''
+#: The three files, as docs/extending.md has them.
+TABLE, MODEL, MODULE = (_example(language) for language in ("csv", "openscad", "python"))
 
 
 def write_family(folder: Path, **texts: str) -> None:
