@@ -22,7 +22,7 @@ def _example(language: str) -> str:
 
 
 #: The three files, as docs/extending.md has them.
-TABLE, MODEL, MODULE = (_example(language) for language in ("csv", "openscad", "python"))
+TABLE, MODEL, MODULE = (_example(language) for language in ("text", "openscad", "python"))
 
 
 def write_family(folder: Path, **texts: str) -> None:
