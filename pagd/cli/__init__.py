@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -26,4 +27,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Imported only here: a command that a server runs needs none of it.
     from pagd.cli.execute import execute
 
-    return execute(words)
+    return execute(words, at_terminal=sys.stderr.isatty() and os.environ.get("TERM") != "dumb")

@@ -6,7 +6,10 @@ import argparse
 import importlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pagd.cli.answer import Answer
 
 __all__ = [
     "add_command",
@@ -25,17 +28,22 @@ def add_command(commands: Any, name: str, handler: str, text: str) -> argparse.A
     command: argparse.ArgumentParser = commands.add_parser(
         name, help=text, description=text[0].upper() + text[1:] + "."
     )
-    command.set_defaults(handler=_lazy(handler))
+    command.set_defaults(handler=_lazy(handler), parser=command)
+    command.add_argument(
+        "--json",
+        action="store_true",
+        help="print one JSON document, and what is for people to stderr",
+    )
     return command
 
 
-def _lazy(handler: str) -> Callable[[argparse.Namespace], int]:
+def _lazy(handler: str) -> Callable[[argparse.Namespace], Answer]:
     home, _, function = handler.rpartition(":")
 
-    def call(options: argparse.Namespace) -> int:
+    def call(options: argparse.Namespace) -> Answer:
         module = importlib.import_module(f"pagd.cli.{home or 'commands'}")
-        code: int = getattr(module, function)(options)
-        return code
+        answer: Answer = getattr(module, function)(options)
+        return answer
 
     return call
 

@@ -56,7 +56,10 @@ def _add_embed(commands: Any) -> None:
 
 def _add_generate(commands: Any) -> None:
     command = add_command(
-        commands, "generate", "generative:generate", "new designs, valid and none a copy"
+        commands,
+        "generate",
+        "generative:generate",
+        "new designs, all of them buildable and none a copy",
     )
     # Without them they are made, in the folder of the command.
     add_folder(command, "dataset", required=False)
@@ -79,7 +82,10 @@ def _add_generate(commands: Any) -> None:
 
 def _add_diversity(commands: Any) -> None:
     command = add_command(
-        commands, "diversity", "generative:diversity", "how new and varied, beside other generators"
+        commands,
+        "diversity",
+        "generative:diversity",
+        "how new and varied they are, beside those of other generators",
     )
     for stage in ("dataset", "embedding", "generated"):
         add_folder(command, stage, required=True)
@@ -93,7 +99,7 @@ def _add_select(commands: Any) -> None:
         commands,
         "select",
         "generative:select",
-        "generated designs to simulate, far from each other",
+        "some of them to simulate, far from each other",
     )
     for stage in ("dataset", "generated"):
         add_folder(command, stage, required=True)
@@ -107,7 +113,10 @@ def _add_select(commands: Any) -> None:
 
 def _add_screen(commands: Any) -> None:
     command = add_command(
-        commands, "screen", "generative:screen", "many designs by one cell each: performance"
+        commands,
+        "screen",
+        "generative:screen",
+        "performance of a table of designs, by one chamber each: seconds",
     )
     command.add_argument(
         "designs", type=Path, help="table of designs: CSV, or Parquet as pagd writes it"

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
 
 from pagd.catalogue import NamedDesign
+from pagd.cli.answer import Answer, answer_of
 from pagd.design import (
     PARAMETERS,
     GeometryRules,
@@ -16,9 +19,17 @@ from pagd.design import (
     violations,
 )
 from pagd.errors import Status
+from pagd.long_work import is_shown
 from pagd.record import Record
 
-__all__ = ["print_design", "print_result", "progress_to", "start_log", "verdict"]
+__all__ = [
+    "design_document",
+    "print_design",
+    "print_result",
+    "start_log",
+    "steps_of_solve",
+    "verdict",
+]
 
 log = logging.getLogger(__name__)
 
@@ -34,43 +45,59 @@ def start_log(verbose: bool) -> None:
     logging.getLogger("pagd").setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
-def progress_to(maximum_kPa: float) -> Callable[[float, int], None]:
-    """Return what tells how far a solve is: in place for a person, line by line for a file."""
-    if not sys.stderr.isatty():
-        return lambda pressure, count: log.info("%.4g kPa: iterations %d", pressure, count)
-
-    def show(pressure_kPa: float, iterations: int) -> None:
-        end = "\n" if pressure_kPa >= maximum_kPa else ""
-        print(f"\r{pressure_kPa:8.3f} of {maximum_kPa:g} kPa", end=end, file=sys.stderr, flush=True)
-
-    return show
+def steps_of_solve() -> Callable[[float, int], None] | None:
+    """Return what logs every step of a solve; nothing where a bar shows them."""
+    if is_shown():
+        return None
+    return lambda pressure, count: log.info("%.4g kPa: iterations %d", pressure, count)
 
 
-def verdict(record: Record, keep_going: bool) -> int:
-    """Return the exit code for how a design stands, and say on stderr why it is not ok."""
+def verdict(record: Record, folder: Path, keep_going: bool) -> Answer:
+    """Return the answer for how a design stands, and say on stderr why it is not ok."""
     if record.status is Status.ok:
-        return 0
+        return answer_of(record, folder)
     print(f"pagd: {record.design_id}: {record.status}: {record.reason}", file=sys.stderr)
-    return 0 if keep_going else 1
+    return answer_of(record, folder, 0 if keep_going else 1)
 
 
-def print_design(named: NamedDesign, rules: GeometryRules) -> None:
-    """Print the parameters of a design and, if it can be built, what follows from them."""
-    design = named.design
-    print(f"{named.name} ({named.origin})")
-    for symbol, value in design.as_dict().items():
+def design_document(named: NamedDesign, rules: GeometryRules) -> dict[str, Any]:
+    """Return a design as plain data: parameters, rules broken and, if none is, what follows."""
+    design, broken = named.design, violations(named.design, rules)
+    document: dict[str, Any] = {
+        "name": named.name,
+        "origin": named.origin,
+        "parameters": design.as_dict(),
+        "can_be_built": not broken,
+        "violations": [{**one._asdict(), "message": str(one)} for one in broken],
+    }
+    if not broken:
+        document |= {
+            "L_T": design.L_T,
+            "N1": design.N1,
+            "N2": design.N2,
+            "mode": design.mode,
+            "solid_volume_mm3": body_volume(design, rules) + base_volume(design),
+            "cavity_volume_mm3": cavity_volume(design, rules),
+        }
+    return document
+
+
+def print_design(document: Mapping[str, Any]) -> None:
+    """Print what :func:`design_document` returns."""
+    print(f"{document['name']} ({document['origin']})")
+    for symbol, value in document["parameters"].items():
         parameter = PARAMETERS[symbol]
         _print_row(symbol, value, parameter.unit, parameter.description)
-    broken = violations(design, rules)
-    if broken:
-        print("cannot be built:", *broken, sep="\n  ")
+    if not document["can_be_built"]:
+        messages = [one["message"] for one in document["violations"]]
+        print("cannot be built:", *messages, sep="\n  ")
         return
-    _print_row("L_T", design.L_T, "mm", "total length")
-    _print_row("N1, N2", f"{design.N1}, {design.N2}", "1", "helical and straight chambers")
-    _print_row("mode", design.mode, "", "deformation it is drawn for")
-    solid = body_volume(design, rules) + base_volume(design)
-    _print_row("solid", solid, "mm³", "volume of the elastomer")
-    _print_row("cavity", cavity_volume(design, rules), "mm³", "volume of the air")
+    counts = f"{document['N1']}, {document['N2']}"
+    _print_row("L_T", document["L_T"], "mm", "total length")
+    _print_row("N1, N2", counts, "1", "helical and straight chambers")
+    _print_row("mode", document["mode"], "", "deformation it is drawn for")
+    _print_row("solid", document["solid_volume_mm3"], "mm³", "volume of the elastomer")
+    _print_row("cavity", document["cavity_volume_mm3"], "mm³", "volume of the air")
 
 
 def print_result(record: Record) -> None:

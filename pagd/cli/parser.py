@@ -21,35 +21,61 @@ from pagd.cli.arguments import (
     override,
 )
 from pagd.cli.generative_parser import add_generative
+from pagd.cli.usage import Parser
 from pagd.errors import Status
 
 __all__ = ["make_parser"]
 
+_DESIGN = "design: a YAML or JSON file, or JSON text"
 _EPILOG = """\
 examples:
-  pagd run my_design.yaml --out my_design          all stages for a design of your own
-  pagd design check my_design.yaml                 is it buildable?
-  pagd generate --mode mixed -n 100 --out mixed    new designs that bend and twist
+  pagd design check my_actuator.yaml               can it be built?
+  pagd run my_actuator.yaml --out my_actuator      all stages for a design of your own
+  pagd view my_actuator                            shape, curves and figures in the browser
+  pagd solve my_actuator.yaml --vtu --out solved   as far as the solution, for ParaView too
   pagd mesh --body body.stl --base base.stl --size-mm 3 --out mesh
-  pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --vtu --out solve
-  pagd view my_design                              shape, curves and figures in the browser
+  pagd solve --mesh mesh --material dragon_skin_30 --pressure-kPa 30 --out solve
+  pagd generate --mode mixed -n 100 --out mixed    new designs that bend and twist
+  pagd screen mixed/designs.parquet --out screened what they would do, approximately
   pagd status                                      how far a run of the workflow is
 
-exit codes: 0 done, 1 the design failed (its record says why), 2 bad input, 70 a fault of pagd,
-75 the machine failed (disk, memory, time): the same may succeed later
+exit codes: 0 done, 1 the design failed (its record says why) or a check has found something,
+2 bad input, 70 a fault of pagd, 75 the machine failed (disk, memory, time): the same may succeed
+later, 130 interrupted
 """
+
+
+# Heading to subcommands, in the order in which somebody new has use for them.
+_HEADINGS = {
+    "one design": ("run", "design"),
+    "its stages, one by one": (
+        "geometry",
+        "repair",
+        "mesh",
+        "solve",
+        "metrics",
+        "figures",
+        "deck",
+    ),
+    "results of designs": ("view", "report", "summary"),
+    "new designs": ("dataset", "embed", "generate", "diversity", "select"),
+    "many designs, approximately": ("screen",),
+    "runs of the workflow": ("status", "audit"),
+    "public data sets": ("archive", "check-archive"),
+}
 
 
 @functools.cache
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser; each subcommand carries its ``handler(options) -> exit code``."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="pagd",
         description="Design and simulate soft pneumatic actuators, from parameters to "
-        "trajectories. Units are mm, N, MPa; kPa and degrees where the name says so.",
+        "trajectories.\nUnits are mm, N, MPa; kPa and degrees where the name says so.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.headings = _HEADINGS
     parser.add_argument("--version", action="version", version=f"pagd {__version__}")
     shtab.add_argument_to(
         parser, "--print-completion", help="print what makes a shell complete words, and end"
@@ -72,36 +98,49 @@ def make_parser() -> argparse.ArgumentParser:
 
 
 def _add_run(commands: Any) -> None:
-    run = add_command(commands, "run", "run_all", "all stages for one design, in one folder")
-    run.add_argument("design", help="design: a YAML or JSON file, or JSON text")
+    run = add_command(
+        commands, "run", "run_all", "simulate a design: all stages below, into one folder"
+    )
+    run.add_argument("design", metavar="DESIGN", help=_DESIGN)
     add_stage_options(run)
     _add_mesh_options(run)
     _add_solve_options(run)
 
 
 def _add_design(commands: Any) -> None:
-    design = commands.add_parser("design", help="look at a design before anything is run")
+    design = commands.add_parser(
+        "design",
+        help="check a design, or show it, before anything is run",
+        description="Check a design, or show it, before anything is run.",
+    )
     actions = design.add_subparsers(metavar="action", required=True)
     for action, handler, text in (
-        ("check", "check_design", "tell every rule that the design breaks"),
+        (
+            "check",
+            "check_design",
+            "tell every rule that the design breaks, or that it can be built",
+        ),
         ("show", "show_design", "print the parameters and what follows from them"),
     ):
         sub = add_command(actions, action, handler, text)
-        sub.add_argument("design", help="design: a YAML or JSON file, or JSON text")
+        sub.add_argument("design", metavar="DESIGN", help=_DESIGN)
         add_config(sub)
         add_verbose(sub)
 
 
 def _add_geometry(commands: Any) -> None:
-    geometry = add_command(commands, "geometry", "geometry", "parameters → surfaces, by OpenSCAD")
-    geometry.add_argument(
-        "--design", required=True, help="design: a YAML or JSON file, or JSON text"
+    geometry = add_command(
+        commands, "geometry", "geometry", "parameters → surfaces of the solids, by OpenSCAD"
     )
+    geometry.add_argument("design", nargs="?", metavar="DESIGN", help=_DESIGN)
+    geometry.add_argument("--design", dest="design_option", metavar="DESIGN", help="the same")
     add_stage_options(geometry)
 
 
 def _add_repair(commands: Any) -> None:
-    repair = add_command(commands, "repair", "repair", "surfaces → sound surfaces, by pymeshlab")
+    repair = add_command(
+        commands, "repair", "repair", "surfaces → watertight surfaces, by pymeshlab"
+    )
     add_folder(repair, "geometry", required=True)
     add_stage_options(repair)
 
@@ -110,6 +149,7 @@ def _add_mesh(commands: Any) -> None:
     mesh = add_command(
         commands, "mesh", "mesh", "surfaces → quadratic tetrahedra with named surfaces"
     )
+    _add_own_design(mesh, "geometry/, repair/ and mesh/")
     add_folder(mesh, "geometry", required=False)
     add_folder(mesh, "repair", required=False)
     own = mesh.add_argument_group("surfaces of your own, instead of a design")
@@ -123,8 +163,19 @@ def _add_mesh(commands: Any) -> None:
     add_stage_options(mesh)
 
 
-def _add_mesh_options(command: argparse.ArgumentParser) -> None:
-    group = command.add_argument_group("mesh (instead of the configuration's values)")
+def _add_own_design(command: argparse.ArgumentParser, folders: str) -> None:
+    command.add_argument(
+        "design",
+        nargs="?",
+        metavar="DESIGN",
+        help=f"{_DESIGN}: the stages before are run too, into {folders} of --out",
+    )
+
+
+def _add_mesh_options(
+    command: argparse.ArgumentParser, title: str = "mesh (instead of the configuration's values)"
+) -> None:
+    group = command.add_argument_group(title)
     override(group, "mesh", "block_mm", float, "longest edge of the hexahedra, for structured")
     override(group, "mesh", "size_mm", float, "edge length of the tetrahedra, for the others")
     group.add_argument(
@@ -139,15 +190,20 @@ def _add_mesh_options(command: argparse.ArgumentParser) -> None:
 
 def _add_solve(commands: Any) -> None:
     solve = add_command(
-        commands, "solve", "solve", "free actuation and blocked force: pressure from 0 up"
+        commands,
+        "solve",
+        "solve",
+        "tetrahedra → free actuation and blocked force: pressure from 0 up",
     )
+    _add_own_design(solve, "geometry/, repair/, mesh/ and solve/")
     solve.add_argument(
         "--mesh",
         type=Path,
-        required=True,
+        metavar="PATH",
         help="folder of the stage mesh, or a .msh file with surfaces fixed, cavity, paper, …",
     )
     solve.add_argument("--name", help="name in the record (default: that of the mesh)")
+    _add_mesh_options(solve, "mesh, of a design (instead of the configuration's values)")
     _add_solve_options(solve)
     add_stage_options(solve)
 
@@ -209,7 +265,9 @@ def _add_metrics(commands: Any) -> None:
 
 
 def _add_figures(commands: Any) -> None:
-    figures = add_command(commands, "figures", "figures", "pictures of geometry, mesh and shapes")
+    figures = add_command(
+        commands, "figures", "figures", "pictures of geometry, mesh, shapes and curves"
+    )
     figures.add_argument(
         "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
     )
@@ -217,16 +275,23 @@ def _add_figures(commands: Any) -> None:
 
 
 def _add_gathering(commands: Any) -> None:
-    summary = add_command(commands, "summary", "summary", "tables of designs: one row a design")
-    report = add_command(commands, "report", "report", "page of designs, for any browser")
-    view = add_command(commands, "view", "view", "the same page, shown in the browser at once")
+    summary = add_command(
+        commands, "summary", "gathering:summary", "tables of designs: one row a design"
+    )
+    report = add_command(
+        commands, "report", "gathering:report", "the same page, as an HTML file to keep"
+    )
+    view = add_command(
+        commands, "view", "gathering:view", "page of designs, shown in the browser at once"
+    )
     for command in (summary, report, view):
         command.add_argument(
             "design_folders",
             type=Path,
-            nargs="+",
+            nargs="*" if command is view else "+",
             metavar="FOLDER",
-            help="folder with a design's stage folders",
+            help="folder with a design's stage folders"
+            + (" (default: all of results/designs)" if command is view else ""),
         )
         add_verbose(command)
     summary.add_argument("--out", type=Path, required=True, help="folder of the tables")
@@ -259,7 +324,6 @@ def _add_keeping(commands: Any) -> None:
         )
         add_verbose(command)
     add_config(status)
-    status.add_argument("--json", action="store_true", help="all of it, for machines")
     audit.add_argument("--quick", action="store_true", help="compare the sizes of files alone")
     audit.add_argument(
         "--discard",
@@ -278,7 +342,7 @@ def _add_keeping(commands: Any) -> None:
 
 def _add_archiving(commands: Any) -> None:
     archive = add_command(
-        commands, "archive", "archiving:archive", "public data set of what a run has left"
+        commands, "archive", "archiving:archive", "write a public data set of what a run has left"
     )
     archive.add_argument("results", type=Path, metavar="FOLDER", help="folder of the run")
     archive.add_argument(
@@ -298,7 +362,10 @@ def _add_archiving(commands: Any) -> None:
     )
     add_out(archive)
     check = add_command(
-        commands, "check-archive", "archiving:check_archive", "whether a data set is sound"
+        commands,
+        "check-archive",
+        "archiving:check_archive",
+        "whether such a data set is sound: checksums, metadata, rules",
     )
     check.add_argument(
         "archive", type=Path, metavar="FOLDER", help="folder of the data set, or its ZIP file"
