@@ -27,8 +27,8 @@ class Shown(Protocol):
         """Tell what is at work."""
 
 
-#: Shows a piece of work until the block ends: (what it is, the whole, its unit).
-Display = Callable[[str, float, str], AbstractContextManager[Shown]]
+#: Shows a piece of work until the block ends: (what, whole, unit, even), as of :func:`long_work`.
+Display = Callable[[str, float, str, bool], AbstractContextManager[Shown]]
 
 _DISPLAY: ContextVar[Display | None] = ContextVar("display", default=None)
 
@@ -57,7 +57,7 @@ def is_shown() -> bool:
 
 
 @contextlib.contextmanager
-def long_work(what: str, whole: float, unit: str) -> Iterator[Shown]:
+def long_work(what: str, whole: float, unit: str, *, even: bool = True) -> Iterator[Shown]:
     """Yield what the block tells how far it is.
 
     Parameters
@@ -68,22 +68,26 @@ def long_work(what: str, whole: float, unit: str) -> Iterator[Shown]:
         How much there is of it, in ``unit``.
     unit
         Unit of what is done: designs, kPa.
+    even
+        Whether its parts take about as long as each other, so that the time left can be told.
     """
     display = _DISPLAY.get()
     if display is None:
         yield _Nobody()
         return
-    with display(what, whole, unit) as shown:
+    with display(what, whole, unit, even) as shown:
         yield shown
 
 
-def counted(items: Iterable[Item], what: str, whole: int, unit: str) -> Iterator[Item]:
+def counted(
+    items: Iterable[Item], what: str, whole: int, unit: str, *, even: bool = True
+) -> Iterator[Item]:
     """Yield the items, and tell how many of them are done.
 
     >>> list(counted("ab", "spelling", 2, "letters"))
     ['a', 'b']
     """
-    with long_work(what, whole, unit) as shown:
+    with long_work(what, whole, unit, even=even) as shown:
         for done, item in enumerate(items, start=1):
             yield item
             shown.reach(done)

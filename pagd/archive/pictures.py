@@ -51,5 +51,5 @@ def draw_sample(sample: Mapping[str, Path], archive: Path) -> None:
             read_sound_record(folder / stage)
     (archive / GALLERY).parent.mkdir()
     draw_gallery(list(sample.values()), archive / GALLERY)
-    for identity, folder in counted(sample.items(), "pictures", len(sample), "designs"):
+    for identity, folder in counted(sample.items(), "drawing", len(sample), "designs"):
         draw_deformed(folder, (archive / GALLERY).with_name(f"{identity}.png"))

@@ -13,8 +13,8 @@ from pagd.long_work import Display, Shown, shown_by
 
 __all__ = ["bars"]
 
-# The rate of so few digits does not flicker; of pressures, the unit stands once.
-_FORM = "{desc}: {percentage:3.0f}% |{bar}| {n:.5g}/{total:.5g} {unit} [{elapsed}<{remaining}]"
+_FORM = "{desc}: {percentage:3.0f} % |{bar}| {n:.5g} of {total:.5g} {unit}, {elapsed}"
+_LEFT = ", {remaining} left"
 
 
 @contextlib.contextmanager
@@ -41,14 +41,14 @@ def _display(process: int) -> Display:
     from tqdm import tqdm
 
     @contextlib.contextmanager
-    def show(what: str, whole: float, unit: str) -> Iterator[Shown]:
+    def show(what: str, whole: float, unit: str, even: bool) -> Iterator[Shown]:
         # The bars of a fork would be drawn over those of this process.
         own = os.getpid() == process
         with tqdm(
             desc=what,
             total=whole,
             unit=unit,
-            bar_format=_FORM,
+            bar_format=_FORM + (_LEFT if even else ""),
             file=sys.stderr,
             leave=False,
             dynamic_ncols=True,
@@ -70,4 +70,4 @@ class _Bar:
         self._bar.update(value - self._bar.n)
 
     def name(self, part: str) -> None:
-        self._bar.set_description(part)
+        self._bar.set_description_str(part)

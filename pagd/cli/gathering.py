@@ -72,15 +72,17 @@ def _designs_of_workflow() -> list[Path]:
 
 
 def _check_results(folders: Sequence[Path]) -> None:
-    """Refuse what there is nothing to show of, and tell how to come by it."""
-    without = next((folder for folder in folders if not _has_results(folder)), None)
-    if folders and without is None:
-        return
-    what = f"{_OF_WORKFLOW}: no results are there" if without is None else f"{without}: no results"
-    raise InputError(
-        f"{what} to show; `pagd run DESIGN.yaml --out FOLDER` makes some of a design, and "
-        "`pagd view FOLDER` shows them."
-    )
+    """Refuse folders of which there is nothing to show, and tell how to come by something."""
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(f"{folder}: there is no such folder.")
+    # A design that has not been begun has its place on a page of others.
+    if not any(_has_results(folder) for folder in folders):
+        where = folders[0] if folders else _OF_WORKFLOW
+        raise InputError(
+            f"{where}: no results to show; `pagd run DESIGN.yaml --out FOLDER` makes some of a "
+            "design, and `pagd view FOLDER` shows them."
+        )
 
 
 def _has_results(folder: Path) -> bool:

@@ -74,7 +74,7 @@ def run(
         "figures": lambda: figures.run(out, at["figures"], config),
     }
     records = {}
-    with long_work(wanted[0], len(wanted), "stages") as shown:
+    with long_work(wanted[0], len(wanted), "stages", even=False) as shown:
         for done, stage in enumerate(wanted):
             shown.name(stage)
             shown.reach(done)

@@ -85,7 +85,7 @@ def run(
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("generate"):
             others = [name for name in GENERATORS if name != own]
-            asked = counted(others, "other generators", len(others), "generators")
+            asked = counted(others, "other generators", len(others), "generators", even=False)
             drawn = _draw(asked, space, config, len(frame), config["generator"]["seed"])
         with meter.part("place"):
             candidates = {own: _candidate(space, frame, _places(frame))}

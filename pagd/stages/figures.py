@@ -54,7 +54,8 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         set_resolution(resolution)
         drawable = _drawable(design)
-        for name, draw in counted(drawable.items(), "pictures", len(drawable), "pictures"):
+        asked = counted(drawable.items(), "drawing", len(drawable), "pictures", even=False)
+        for name, draw in asked:
             with meter.part(name):
                 draw(design, folder / f"{name}.png")
         outcome.figures["pictures"] = sorted(path.name for path in folder.glob("*.png"))
