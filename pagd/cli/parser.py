@@ -39,6 +39,8 @@ examples:
   pagd screen mixed/designs.parquet --out screened what they would do, approximately
   pagd status                                      how far a run of the workflow is
 
+`pagd COMMAND --help` tells all options of a command, with an example.
+
 exit codes: 0 done, 1 the design failed (its record says why) or a check has found something,
 2 bad input, 70 a fault of pagd, 75 the machine failed (disk, memory, time): the same may succeed
 later, 130 interrupted
@@ -146,9 +148,7 @@ def _add_repair(commands: Any) -> None:
 
 
 def _add_mesh(commands: Any) -> None:
-    mesh = add_command(
-        commands, "mesh", "mesh", "surfaces → quadratic tetrahedra with named surfaces"
-    )
+    mesh = add_command(commands, "mesh", "mesh", "design or surfaces → mesh with named surfaces")
     _add_own_design(mesh, "geometry/, repair/ and mesh/")
     add_folder(mesh, "geometry", required=False)
     add_folder(mesh, "repair", required=False)
@@ -193,7 +193,7 @@ def _add_solve(commands: Any) -> None:
         commands,
         "solve",
         "solve",
-        "tetrahedra → free actuation and blocked force: pressure from 0 up",
+        "design or mesh → free actuation and blocked force",
     )
     _add_own_design(solve, "geometry/, repair/, mesh/ and solve/")
     solve.add_argument(
@@ -210,7 +210,7 @@ def _add_solve(commands: Any) -> None:
 
 def _add_solve_options(command: argparse.ArgumentParser) -> None:
     group = add_materials(command)
-    override(group, "solve", "element", str, "taylor_hood or element_pressure")
+    override(group, "solve", "element", str, "auto, hexahedron, taylor_hood or element_pressure")
     override(group, "solve", "blocked_force", str, "what holds the tip: edge, plate or none")
     group.add_argument(
         "--threads", type=int, default=1, metavar="N", help="threads of the solver (default: 1)"
@@ -224,6 +224,7 @@ def _add_deck(commands: Any) -> None:
         "--mesh",
         type=Path,
         required=True,
+        metavar="PATH",
         help="folder of the stage mesh, or a .msh file with surfaces fixed, cavity, paper, …",
     )
     deck.add_argument("--out", type=Path, required=True, metavar="FILE", help="deck to write")
@@ -279,10 +280,10 @@ def _add_gathering(commands: Any) -> None:
         commands, "summary", "gathering:summary", "tables of designs: one row a design"
     )
     report = add_command(
-        commands, "report", "gathering:report", "the same page, as an HTML file to keep"
+        commands, "report", "gathering:report", "page of designs, as an HTML file for any browser"
     )
     view = add_command(
-        commands, "view", "gathering:view", "page of designs, shown in the browser at once"
+        commands, "view", "gathering:view", "page of designs, opened in the browser at once"
     )
     for command in (summary, report, view):
         command.add_argument(
@@ -294,9 +295,15 @@ def _add_gathering(commands: Any) -> None:
             + (" (default: all of results/designs)" if command is view else ""),
         )
         add_verbose(command)
-    summary.add_argument("--out", type=Path, required=True, help="folder of the tables")
-    report.add_argument("--out", type=Path, required=True, help="HTML file to write")
-    view.add_argument("--out", type=Path, help="HTML file to write (default: beside the folder)")
+    summary.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="folder of the tables"
+    )
+    report.add_argument(
+        "--out", type=Path, required=True, metavar="FILE", help="HTML file to write"
+    )
+    view.add_argument(
+        "--out", type=Path, metavar="FILE", help="HTML file to write (default: beside the folder)"
+    )
     view.add_argument("--no-browser", action="store_true", help="write the page, and show nothing")
     summary.add_argument(
         "--dataset",
@@ -365,7 +372,7 @@ def _add_archiving(commands: Any) -> None:
         commands,
         "check-archive",
         "archiving:check_archive",
-        "whether such a data set is sound: checksums, metadata, rules",
+        "whether a public data set is sound",
     )
     check.add_argument(
         "archive", type=Path, metavar="FOLDER", help="folder of the data set, or its ZIP file"

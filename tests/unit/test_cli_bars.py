@@ -14,10 +14,13 @@ import termios
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+from design_samples import training
 
 from pagd.cli.bars import bars
 from pagd.cli.execute import execute
+from pagd.embedding.tsne import TSNE
 from pagd.long_work import Shown, counted, is_shown, long_work, shown_by
 
 PAGD = [sys.executable, "-m", "pagd"]
@@ -81,6 +84,16 @@ def test_work_is_told_to_whoever_has_asked() -> None:
         shown.reach(1)
     assert not is_shown()
     assert len(noted.told) == 3
+
+
+def test_the_plane_is_the_same_where_its_rounds_are_shown() -> None:
+    noted = Noted()
+    with shown_by(noted):
+        shown = TSNE(perplexity=15.0, threads=1).fit(training(), seed=3)
+    np.testing.assert_array_equal(
+        shown.points, TSNE(perplexity=15.0, threads=1).fit(training(), seed=3).points
+    )
+    assert noted.told == [("t-SNE", 750, "rounds"), *range(10, 760, 10)]
 
 
 def test_a_terminal_has_bars_and_ends_without(tmp_path: Path) -> None:

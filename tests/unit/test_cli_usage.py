@@ -36,15 +36,18 @@ def examples() -> list[str]:
         for block in re.findall(r"^```sh\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE):
             for line in block.replace("\\\n", " ").splitlines():
                 if line.startswith("pagd ") and "…" not in line:
-                    found.append(line)
+                    found.append(line.partition(" > ")[0])
     return found
 
 
-def test_every_command_is_under_one_heading() -> None:
+def test_every_command_is_under_one_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
     headings = make_parser().headings
     listed = [name for names in headings.values() for name in names]
     assert sorted(listed) == sorted(name for name in commands() if " " not in name)
     text = make_parser().format_help()
+    for line in listed:
+        assert re.search(rf"^  {line} +\S.*\n(  \S|\n)", text, re.MULTILINE), f"{line}: two lines"
     places = [text.index(f"\n{heading}:\n") for heading in headings]
     assert places == sorted(places)
 
@@ -58,6 +61,9 @@ def test_help_of_every_command(command: str, capsys: pytest.CaptureFixture[str])
     assert told.startswith(f"usage: pagd {command}")
     if command != "design":
         assert "--json" in told
+        example = told[told.index("\nexample:\n  ") :].split()[1:]
+        assert example[: 1 + len(command.split())] == ["pagd", *command.split()]
+        assert callable(make_parser().parse_args(example[1:]).handler)
 
 
 def test_pagd_alone_prints_its_help(capsys: pytest.CaptureFixture[str]) -> None:
