@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
 from pathlib import Path
 
 from pagd.catalogue import design_from
@@ -18,6 +19,7 @@ from pagd.errors import InputError
 __all__ = [
     "check_design",
     "deck",
+    "export",
     "figures",
     "geometry",
     "mesh",
@@ -156,6 +158,14 @@ def figures(options: Namespace) -> int:
     return verdict(record, options.keep_going)
 
 
+def export(options: Namespace) -> int:
+    """Run the stage export."""
+    from pagd.stages import export as stage
+
+    record = stage.run(options.design_folder, options.out, config_of(options))
+    return verdict(record, options.keep_going)
+
+
 def summary(options: Namespace) -> int:
     """Write the tables of designs, of those that came as far as the metrics."""
     from pagd.record import RECORD_NAME
@@ -177,10 +187,8 @@ def summary(options: Namespace) -> int:
 
 
 def report(options: Namespace) -> int:
-    """Write the page of designs."""
-    from pagd.figures.page import write_page
-
-    write_page(options.design_folders, options.out)
+    """Write the page of designs, and their cards beside it."""
+    _write_page(options.design_folders, options.out)
     return 0
 
 
@@ -188,15 +196,25 @@ def view(options: Namespace) -> int:
     """Write the page of designs beside the first of them, and show it in the browser."""
     import webbrowser
 
-    from pagd.figures.page import write_page
-
     first: Path = options.design_folders[0]
     page = options.out or first.resolve().with_name(f"{first.resolve().name}.html")
-    write_page(options.design_folders, page)
+    _write_page(options.design_folders, page)
     print(page)
     if not options.no_browser and not webbrowser.open(page.resolve().as_uri()):
         print("pagd: no browser was found; open the page in one.", file=sys.stderr)
     return 0
+
+
+def _write_page(folders: Sequence[Path], page: Path) -> None:
+    from pagd.config import load
+    from pagd.figures.page import cards_beside, write_page
+    from pagd.stages import export as stage
+
+    cards, config = cards_beside(page), load(None)
+    whole = [folder.resolve() for folder in folders]  # "." has no name
+    for folder in whole:
+        stage.run(folder, cards / folder.name, config)
+    write_page(whole, page, cards=cards)
 
 
 def run_all(options: Namespace) -> int:

@@ -64,6 +64,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_deck(commands)
     _add_metrics(commands)
     _add_figures(commands)
+    _add_export(commands)
     _add_gathering(commands)
     _add_keeping(commands)
     _add_archiving(commands)
@@ -214,6 +215,16 @@ def _add_figures(commands: Any) -> None:
         "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
     )
     add_stage_options(figures)
+
+
+def _add_export(commands: Any) -> None:
+    export = add_command(
+        commands, "export", "export", "a design for other programs: STL, STEP, moulds, VTU, CSV"
+    )
+    export.add_argument(
+        "design_folder", type=Path, metavar="FOLDER", help="folder with a design's stage folders"
+    )
+    add_stage_options(export)
 
 
 def _add_gathering(commands: Any) -> None:
