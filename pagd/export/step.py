@@ -6,6 +6,7 @@ walls of a pneu-net as somebody would have drawn them, and not their triangulati
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections.abc import Iterator, Sequence
@@ -22,6 +23,7 @@ from pagd.mesh.facets import Facets, facets_of
 from pagd.mesh.gmsh_session import gmsh_session
 from pagd.mesh.joining import Complex
 from pagd.mesh.surfaces import RELATIVE_TOLERANCE, Surface
+from pagd.mesh.topology import open_edges
 from pagd.mesh.types import FloatArray, IntArray
 
 __all__ = ["write_step"]
@@ -29,8 +31,10 @@ __all__ = ["write_step"]
 # OpenCASCADE takes corners for those of one plane that lie within 1e-7 mm of it. STL files keep
 # 24 bits, some 4e-6 mm.
 _FLAT_MM, _ROUNDS = 1e-9, 50
-# When the file was written, which OpenCASCADE puts in its head.
+# When the file was written, which OpenCASCADE puts in its head, and how many it had written before.
 _WRITTEN = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")
+_COUNTED = re.compile(rb"(STEP translator [\d.]+) \d+")
+_OCCURRENCE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()'\d+'")
 # Planes that meet at a smaller angle do not say where along them a corner lies.
 _SMALLEST_ANGLE = 1e-6
 
@@ -63,14 +67,20 @@ def write_step(surfaces: Sequence[Surface], path: Path) -> list[float]:
             with replaced_file(path) as temporary:
                 with _silenced():
                     gmsh.write(str(temporary))
-                # The same solids give the same file, whenever it is written.
-                temporary.write_bytes(_WRITTEN.sub(b"''", temporary.read_bytes(), count=1))
+                temporary.write_bytes(_repeatable(temporary.read_bytes()))
             return [float(gmsh.model.occ.getMass(3, solid)) for solid in solids]
     except StageFailure:
         raise
     except Exception as error:  # all that gmsh ever raises
         reason = f"OpenCASCADE could not make a solid of the surface: {error}."
         raise StageFailure(Status.invalid_geometry, reason) from error
+
+
+def _repeatable(text: bytes) -> bytes:
+    """Return a STEP file without time and counters: the same solids give the same file."""
+    numbers = itertools.count(1)
+    text = _COUNTED.sub(rb"\1 1", _WRITTEN.sub(b"''", text, count=1))
+    return _OCCURRENCE.sub(lambda found: found[1] + b"'%d'" % next(numbers), text)
 
 
 @contextmanager
@@ -89,6 +99,10 @@ def _silenced() -> Iterator[None]:
 
 def _facets(surface: Surface) -> Facets:
     tolerance = RELATIVE_TOLERANCE * float(np.linalg.norm(np.ptp(surface.points, axis=0)))
+    if len(open_edges(surface.triangles)):
+        raise StageFailure(
+            Status.invalid_geometry, "The surface is not closed, and bounds no solid."
+        )
     one_patch = np.zeros(len(surface.triangles), dtype=np.int64)
     level = float(surface.points[:, 2].min())
     complex_ = Complex(surface.points, surface.triangles, one_patch, level, tolerance, half=False)

@@ -212,8 +212,8 @@ def _held(entry: Entry) -> dict[str, Any] | None:
     if not has_blocked_force(entry.folder):
         return None
     steps = steps_data(load_blocked_force(entry.folder))
-    known = {key: steps[key] for key in ("pressure_kPa", "force_N") if key in steps}
-    return known if len(known) == 2 else None
+    # Without a force at any step there is nothing to draw.
+    return {key: steps[key] for key in ("pressure_kPa", "force_N")} if "force_N" in steps else None
 
 
 def _asset(name: str) -> str:
