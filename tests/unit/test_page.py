@@ -25,6 +25,7 @@ from pagd.figures.groups import read_entries
 from pagd.figures.load import Path3D
 from pagd.figures.page import Study, write_page
 from pagd.figures.page.cards import write_card
+from pagd.figures.page.claims import claims, claims_of
 from pagd.figures.page.explorer import explorer_data
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, comparison_table
 from pagd.figures.page.libraries import datatables, plotly
@@ -162,7 +163,13 @@ def test_page_tells_of_every_design(page):
     assert text.count('" open><summary>') == 3
     assert re.findall('data-address="(.*?)"', text) == [f"index_files/{name}" for name in names]
     # What there is nothing of has no section.
-    expected = ["What was run", "Explorer", "Performance", "Trajectories, angles and forces"]
+    expected = [
+        "What was run",
+        "Beside the paper",
+        "Explorer",
+        "Performance",
+        "Trajectories, angles and forces",
+    ]
     expected += ["Each design"]
     assert titles_of(text) == expected
     assert "Contact was off" not in text
@@ -346,6 +353,36 @@ def test_comparison_of_nothing_is_nothing():
     assert comparison_table({}) == ""
 
 
+# ---- the paper beside a run -----------------------------------------------------------------
+
+
+def test_claims_are_beside_what_was_measured(study):
+    rows = [
+        {"design_id": "straight", "origin": "table2", "status": "ok", "pressure_kPa": 50.0}
+        | {"bending_deg": 91.2, "twist_deg": 0.04},
+        {"design_id": "failed", "origin": "table2", "status": "mesh_failed"},
+    ]
+    hull = measured("gmm", "hull_ratio", 1.18, low=0.87, high=1.61)
+    said = [one.measured for one in claims_of(study, rows)]
+    assert said == [
+        "1,900 designs: 901 bending, 999 twisting",
+        "t-SNE with perplexity 30, trustworthiness 0.900",
+        "of 1,000 generated designs bending 25 %, twisting 25 %, mixed 50 %",
+        "2 designs: 1 ok, 1 mesh failed",
+        "straight at 50 kPa: bends by 91°, twists not",
+    ]
+    diversity = study.diversity.with_name("hull.json")
+    diversity.write_text(json.dumps(COMPARISON | {"rows": [hull]}))
+    (told,) = (
+        one for one in claims_of(replace(study, diversity=diversity), []) if "50" in one.said
+    )
+    assert (
+        told.measured
+        == "1.18 times the area (0.87 to 1.61 for other fifties); no larger hull is certain"
+    )
+    assert claims(Study(), []) == ""
+
+
 # ---- page of a study ------------------------------------------------------------------------
 
 
@@ -461,6 +498,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
     text = whole_page.read_text(encoding="utf-8")
     assert titles_of(text) == [
         "What was run",
+        "Beside the paper",
         "Explorer",
         "Data set and embedding",
         "Generator and modes",
@@ -495,7 +533,7 @@ def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
     assert sorted(shown) == sorted(CAPTIONS)
     assert text.count("data:image/webp") == len(CAPTIONS)
     assert shown[0] == "embedding"
-    assert text.index("How hull") < text.index("<h2>7. Performance") < text.index("How feasibility")
+    assert text.index("How hull") < text.index("<h2>8. Performance") < text.index("How feasibility")
 
 
 def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):

@@ -19,6 +19,7 @@ from pagd.figures.load import (
     load_trajectory,
 )
 from pagd.figures.page.cards import card, json_text, write_card
+from pagd.figures.page.claims import claims
 from pagd.figures.page.explorer import explorer, explorer_data
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, generative_sections
 from pagd.figures.page.libraries import datatables, datatables_style, plotly
@@ -130,6 +131,7 @@ def _sections(
     cards = [card(entry, addresses[entry.name], is_open=few) for entry in entries]
     return [
         Section("run", "What was run", what_was_run(entries, rows, _records(study))),
+        Section("paper", "Beside the paper", claims(study, rows)),
         Section("explorer", "Explorer", explorer() if rows else ""),
         *generative_sections(study),
         Section("screening", "What the designs can do", screening(study)),
