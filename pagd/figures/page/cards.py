@@ -71,9 +71,9 @@ def card_content(entry: Entry, offered: str = "") -> dict[str, Any]:
     names = sorted(captions, key=lambda name: name != "geometry")
     body = [
         _reason(entry),
+        '<div class="place"></div>',
         key_figures(entry),
         _mechanics(entry),
-        '<div class="place"></div>',
         folded("Mesh", mesh_quality(entry)),
         folded("Downloads", offered),
         folded("Record", stage_records(entry)),

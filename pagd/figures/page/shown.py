@@ -39,7 +39,7 @@ FIGURES: Final = (
     Shown("bending", "°", "bending_deg", 1),
     Shown("twist", "°", "twist_deg", 1),
     Shown("blocked force", "N", "blocked_force_N", 3),
-    Shown("of the tip held to", "kPa", "blocked_force_pressure_kPa", 1),
+    Shown("tip held up to", "kPa", "blocked_force_pressure_kPa", 1),
     Shown("tip x", "mm", "tip_x_mm", 1),
     Shown("tip y", "mm", "tip_y_mm", 1),
     Shown("tip z", "mm", "tip_z_mm", 1),
