@@ -68,6 +68,7 @@ _CONTENTS = """
 :caption: Using it
 
 docs/command-line
+docs/report
 docs/workflow
 docs/sweeps
 docs/dataset

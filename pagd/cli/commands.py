@@ -18,6 +18,7 @@ from pagd.errors import InputError
 __all__ = [
     "check_design",
     "deck",
+    "export",
     "figures",
     "geometry",
     "mesh",
@@ -157,6 +158,14 @@ def metrics(options: Namespace) -> Answer:
 def figures(options: Namespace) -> Answer:
     """Run the stage figures."""
     from pagd.stages import figures as stage
+
+    record = stage.run(options.design_folder, options.out, config_of(options))
+    return verdict(record, options.out, options.keep_going)
+
+
+def export(options: Namespace) -> Answer:
+    """Run the stage export."""
+    from pagd.stages import export as stage
 
     record = stage.run(options.design_folder, options.out, config_of(options))
     return verdict(record, options.out, options.keep_going)

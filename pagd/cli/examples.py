@@ -18,6 +18,7 @@ EXAMPLES: Final = {
     "metrics": "pagd metrics --geometry geometry --repair repair --mesh mesh --solve solve"
     " --out metrics",
     "figures": "pagd figures my_actuator --out pictures",
+    "export": "pagd export my_actuator --out exported",
     "deck": "pagd deck --mesh mesh --pressure-kPa 20 --one-step --out actuator.inp",
     "view": "pagd view my_actuator",
     "report": "pagd report results/designs/* --out designs.html",

@@ -94,8 +94,9 @@ def test_view_writes_the_page_beside_the_design_and_opens_it(
     told = capsys.readouterr()
     assert opened == [page.as_uri()]
     assert told.out == f"{page}\n"
-    assert told.err == "pagd: no browser was found; open the page in one.\n"
-    assert "t_ab = 0.2" in page.read_text()
+    assert told.err.endswith("pagd: no browser was found; open the page in one.\n")
+    assert 'data-address="thin_files/thin"' in page.read_text()
+    assert "t_ab = 0.2" in (tmp_path / "thin_files" / "thin" / "card.js").read_text()
     assert main(["view", str(tmp_path / "thin"), "--no-browser"]) == 0
     assert len(opened) == 1
 

@@ -14,6 +14,10 @@ from pagd.cli import main
 from pagd.cli.parser import make_parser
 
 ROOT = Path(__file__).parents[2]
+THIN = (
+    '{"name": "thin", "L": 9.5, "W": 15, "H": 13, "t": 0.1, "t_n": 1.5, "t_h": 4, "t_ab": 2,'
+    ' "t_b": 2.2, "N": 2, "theta": 0, "alpha": 0}'
+)
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -115,6 +119,21 @@ def test_without_results_the_user_is_told_what_to_do(
     assert main(words) == 2
     assert "`pagd run DESIGN.yaml --out FOLDER` makes some" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["empty"]
+
+
+def test_view_takes_the_designs_of_a_run_of_the_workflow(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", THIN, "--out", "results/designs/thin"]) == 1
+    (tmp_path / "results/designs/begun").mkdir()
+    capsys.readouterr()
+    assert main(["view", "--no-browser"]) == 0
+    told = capsys.readouterr()
+    page = tmp_path / "results/designs.html"
+    assert told.out == f"{page}\n"
+    assert "1 of 2 designs have results" in told.err
+    assert "thin" in page.read_text()
 
 
 def test_the_documents_have_examples() -> None:
