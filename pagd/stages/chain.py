@@ -23,10 +23,12 @@ def run(
     vtu: bool = False,
     progress: Progress | None = None,
     threads: int | None = None,
+    pictures: bool = True,
 ) -> Record:
     """Run every stage into its own folder under ``out``; returns the record of the metrics.
 
-    ``vtu``, ``progress`` and ``threads`` are those of :func:`pagd.stages.solve.run`.
+    ``vtu``, ``progress`` and ``threads`` are those of :func:`pagd.stages.solve.run`; without
+    ``pictures`` the stage figures, which takes some seconds, is left out.
     """
     at = {
         stage: out / stage
@@ -42,5 +44,6 @@ def run(
         mesh=at["mesh"], solve=at["solve"], geometry=at["geometry"], repair=at["repair"]
     )
     record = metrics.run(folders, at["metrics"], config)
-    figures.run(out, at["figures"], config)
+    if pictures:
+        figures.run(out, at["figures"], config)
     return record
