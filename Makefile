@@ -58,7 +58,7 @@ docs: .venv/pagd-installed ## Write the documentation as a site for any browser:
 	@echo "Open build/docs/index.html."
 
 notebooks: .venv/pagd-installed ## Execute docs/notebooks, to look at with their pictures: build/notebooks/*.html.
-	jupyter nbconvert --execute --to html --output-dir build/notebooks docs/notebooks/*.ipynb
+	python -m nbconvert --execute --to html --output-dir build/notebooks docs/notebooks/*.ipynb
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .

@@ -1,4 +1,4 @@
-"""Designs as pictures in notebooks: what IPython is told to show for objects of pagd.
+"""Notebooks: designs as pictures there, and a bar while an analysis runs.
 
 A design knows nothing of pictures. Here IPython is told what to draw for one, by the name of its
 class, so that nothing is imported before the first picture is wanted.
@@ -10,7 +10,9 @@ import functools
 import html
 import sys
 import tempfile
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from pagd.catalogue import NamedDesign
     from pagd.design import Design
 
-__all__ = ["is_notebook", "load_ipython_extension", "show_pictures"]
+__all__ = ["bar", "is_notebook", "load_ipython_extension", "show_pictures"]
 
 
 def show_pictures() -> None:
@@ -33,10 +35,31 @@ def show_pictures() -> None:
 
 def load_ipython_extension(shell: Any) -> None:
     """Register the pictures with an IPython shell; IPython calls this at ``%load_ext pagd``."""
+    # Libraries that draw bars of their own complain of widgets that nothing here uses.
+    warnings.filterwarnings("ignore", message="IProgress not found")
     for (module, name), by_format in _PICTURES.items():
         for mimetype, drawn in by_format.items():
             formatter = shell.display_formatter.formatters[mimetype]
             formatter.for_type_by_name(module, name, drawn)
+
+
+@contextmanager
+def bar(name: str, maximum: float, unit: str) -> Iterator[Callable[[float], None]]:
+    """Show a bar under the cell that runs; yields what sets it to a value. It goes at the end."""
+    from IPython.display import HTML, display
+
+    shown: Any = display(HTML(""), display_id=True)  # type: ignore[no-untyped-call]
+
+    def show(value: float) -> None:
+        text = f"{html.escape(name)}: {value:.1f} of {maximum:g} {unit}"
+        line = f'<progress max="{maximum:g}" value="{value:g}"></progress> {text}'
+        shown.update(HTML(line))  # type: ignore[no-untyped-call]
+
+    show(0.0)
+    try:
+        yield show
+    finally:
+        shown.update(HTML(""))  # type: ignore[no-untyped-call]
 
 
 def is_notebook() -> bool:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import functools
 import json
 import re
-import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from pagd.actuation import Progress
 from pagd.catalogue import NamedDesign, design_from
 from pagd.design import Design
 from pagd.errors import InputError
+from pagd.notebook import bar as in_notebook
 from pagd.notebook import is_notebook
 from pagd.result import Result, read_result
 from pagd.stages import chain
@@ -144,17 +144,19 @@ def _scratch() -> tempfile.TemporaryDirectory[str]:
 @contextmanager
 def _bar(name: str, maximum_kPa: float) -> Iterator[Progress]:
     """A bar of the pressure for whoever looks on; it runs once more while the tip is held."""
-    looked_at = is_notebook() or sys.stderr.isatty()
-    with tqdm(
-        total=maximum_kPa,
-        desc=name,
-        disable=not looked_at,
-        leave=False,
-        bar_format="{desc}: {bar} {n:.1f} of {total:g} kPa [{elapsed}]{postfix}",
-    ) as bar:
+    drawn = in_notebook if is_notebook() else _in_terminal
+    with drawn(name, maximum_kPa, "kPa") as show:
+        yield lambda pressure_kPa, iterations: show(min(pressure_kPa, maximum_kPa))
 
-        def show(pressure_kPa: float, iterations: int) -> None:
-            bar.n = min(pressure_kPa, maximum_kPa)
+
+@contextmanager
+def _in_terminal(name: str, maximum: float, unit: str) -> Iterator[Callable[[float], None]]:
+    """A bar on stderr; none where that is no terminal."""
+    look = f"{{desc}}: {{bar}} {{n:.1f}} of {{total:g}} {unit} [{{elapsed}}]"
+    with tqdm(total=maximum, desc=name, disable=None, leave=False, bar_format=look) as bar:
+
+        def show(value: float) -> None:
+            bar.n = value
             bar.refresh()
 
         yield show

@@ -37,7 +37,9 @@ def sections_as_svg(body: pv.PolyData, base: pv.PolyData, design: Design) -> str
         target = io.StringIO()
         figure = sections_figure(body, base, design)
         figure.savefig(target, format="svg", metadata={"Date": None, "Creator": None})
-    return target.getvalue()
+    # Its size is what it is at most: notebooks are of all widths.
+    fitting = '<svg style="max-width: 100%; height: auto" '
+    return target.getvalue().replace("<svg ", fitting, 1)
 
 
 def sections_figure(body: pv.PolyData, base: pv.PolyData, design: Design) -> Figure:
