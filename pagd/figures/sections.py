@@ -6,6 +6,7 @@ Unlike :mod:`pagd.figures.geometry` there is no view in space, whose pixels take
 from __future__ import annotations
 
 import io
+import re
 from typing import TYPE_CHECKING, Any, Final
 
 import pyvista as pv
@@ -23,7 +24,7 @@ __all__ = ["sections_as_svg", "sections_figure"]
 
 _WIDTH = 10.0
 # Largest side view and plan, inches; height of the details, and of a title with its axis.
-_HIGHEST, _DETAILS, _HEAD = 1.8, 2.7, 0.65
+_HIGHEST, _DETAILS, _HEAD = 1.8, 3.0, 0.65
 # The plan is cut near the roof of the cavities, above the channel.
 _LEVEL = 0.85
 # With a salt of its own matplotlib names equal things equally; by default it draws lots.
@@ -37,9 +38,11 @@ def sections_as_svg(body: pv.PolyData, base: pv.PolyData, design: Design) -> str
         target = io.StringIO()
         figure = sections_figure(body, base, design)
         figure.savefig(target, format="svg", metadata={"Date": None, "Creator": None})
-    # Its size is what it is at most: notebooks are of all widths.
-    fitting = '<svg style="max-width: 100%; height: auto" '
-    return target.getvalue().replace("<svg ", fitting, 1)
+    size = f'style="max-width: {_WIDTH:g}in" width="100%"'
+    told = f'role="img" aria-label="sections of a {design.mode} design, {design.N} chambers"'
+    # As wide as there is room, since notebooks are of all widths.
+    fixed = re.compile(r'(<svg [^>]*?)width="\S+" height="\S+"')
+    return fixed.sub(rf"\1{size} {told}", target.getvalue(), count=1)
 
 
 def sections_figure(body: pv.PolyData, base: pv.PolyData, design: Design) -> Figure:

@@ -44,6 +44,8 @@ def test_a_design_is_a_picture_with_its_dimensions(shown: Shown) -> None:
     for value in (MIXED.L, MIXED.H, MIXED.t_h, MIXED.W, MIXED.t):
         assert f"{value:g}" in written
     assert "27.2" in written
+    # In a narrow notebook it is not cut off.
+    assert ElementTree.fromstring(svg).get("width") == "100%"
     # Outlines of twelve chambers and of their cavities, at least.
     assert svg.count("<path") > 24
     assert data["text/plain"] == repr(MIXED)
