@@ -25,7 +25,7 @@ from pagd.stages import chain
 from pagd.stages.solve import materials_of
 from pagd.validation import check
 
-__all__ = ["simulate"]
+__all__ = ["bar", "simulate"]
 
 
 def simulate(
@@ -79,7 +79,7 @@ def simulate(
     if threads < 1:
         raise InputError(f"threads = {threads} must be at least 1.")
     folder = wanted or Path(tempfile.mkdtemp(dir=_scratch().name)) / named.name
-    with _bar(named.name, settings["solve"]["maximum_pressure_kPa"]) as progress:
+    with bar(named.name, settings["solve"]["maximum_pressure_kPa"]) as progress:
         chain.run(
             named,
             folder,
@@ -142,8 +142,11 @@ def _scratch() -> tempfile.TemporaryDirectory[str]:
 
 
 @contextmanager
-def _bar(name: str, maximum_kPa: float) -> Iterator[Progress]:
-    """A bar of the pressure for whoever looks on; it runs once more while the tip is held."""
+def bar(name: str, maximum_kPa: float) -> Iterator[Progress]:
+    """Show a bar of the pressure to whoever looks on, in a notebook or a terminal, until the end.
+
+    Yields what an analysis tells of its steps; it runs once more while the tip is held.
+    """
     drawn = in_notebook if is_notebook() else _in_terminal
     with drawn(name, maximum_kPa, "kPa") as show:
         yield lambda pressure_kPa, iterations: show(min(pressure_kPa, maximum_kPa))
@@ -153,10 +156,10 @@ def _bar(name: str, maximum_kPa: float) -> Iterator[Progress]:
 def _in_terminal(name: str, maximum: float, unit: str) -> Iterator[Callable[[float], None]]:
     """A bar on stderr; none where that is no terminal."""
     look = f"{{desc}}: {{bar}} {{n:.1f}} of {{total:g}} {unit} [{{elapsed}}]"
-    with tqdm(total=maximum, desc=name, disable=None, leave=False, bar_format=look) as bar:
+    with tqdm(total=maximum, desc=name, disable=None, leave=False, bar_format=look) as drawn:
 
         def show(value: float) -> None:
-            bar.n = value
-            bar.refresh()
+            drawn.n = value
+            drawn.refresh()
 
         yield show

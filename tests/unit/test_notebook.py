@@ -82,6 +82,20 @@ def test_pictures_leave_the_look_of_others_alone(shown: Shown) -> None:
     assert dict(mpl.rcParams) == before
 
 
+def test_a_bar_goes_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+
+    def display(thing: Any, display_id: bool) -> Any:
+        shown.append(thing.data)
+        return SimpleNamespace(update=lambda thing: shown.append(thing.data))
+
+    monkeypatch.setattr("IPython.display.display", display)
+    with notebook.bar("a<b", 20.0, "kPa") as show:
+        show(5.0)
+    assert shown[0] == shown[-1] == ""
+    assert '<progress max="20" value="5"></progress> a&lt;b: 5.0 of 20 kPa' in shown
+
+
 _SESSION = """
 from IPython.core.interactiveshell import InteractiveShell
 {before}

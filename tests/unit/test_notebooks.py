@@ -62,9 +62,11 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [path.stem for path in NOTEBOOKS])
-def test_nothing_is_complained_of(run: dict[str, Any], name: str) -> None:
+def test_there_is_nothing_but_results(run: dict[str, Any], name: str) -> None:
     told = [output.text for output in outputs(run[name]) if output.get("name") == "stderr"]
     assert told == []
+    # Nor is a bar left that has come to its end.
+    assert "<progress" not in "".join(data(run[name], "text/html"))
 
 
 @pytest.mark.slow

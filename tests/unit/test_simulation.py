@@ -16,6 +16,7 @@ from IPython.core.formatters import DisplayFormatter
 from PIL import Image
 
 import pagd
+from pagd import simulation
 from pagd.errors import InputError, Status
 
 SMALL = dataclasses.replace(BENDING, N=2)
@@ -127,6 +128,28 @@ def test_bad_input_is_told_in_a_sentence(given: dict[str, object], message: str)
 def test_no_folder_of_a_design_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="must be that of a design"):
         pagd.read_result(tmp_path)
+
+
+class Terminal(io.StringIO):
+    """Text that somebody looks at."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_terminal_has_a_bar_that_goes_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("COLUMNS", "80")
+    with simulation.bar("gripper", 20.0) as progress:
+        progress(5.0, 3)
+        # Past a limit point it falls, and a last step may go beyond.
+        progress(25.0, 1)
+    states = terminal.getvalue().split("\r")
+    assert [" 0.0 of 20 kPa" in states[1], "gripper: " in states[1]] == [True, True]
+    assert any(" 5.0 of 20 kPa" in state for state in states)
+    assert any(" 20.0 of 20 kPa" in state for state in states)
+    assert not "".join(states[-2:]).strip()
 
 
 _SCRIPT = """
