@@ -8,8 +8,8 @@ import sys
 import traceback
 from collections.abc import Sequence
 
+from pagd.bars import bars
 from pagd.cli.answer import Answer, json_text, only_answer_on_stdout
-from pagd.cli.bars import bars
 from pagd.cli.options import limits_of
 from pagd.cli.output import start_log
 from pagd.cli.parser import make_parser

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from design_samples import training
 
-from pagd.cli.bars import bars
+from pagd.bars import bars
 from pagd.cli.execute import execute
 from pagd.embedding.tsne import TSNE
 from pagd.long_work import Shown, counted, is_shown, long_work, shown_by
