@@ -11,10 +11,13 @@ export PYTHON
 # Rules and tests find `pagd`, `python` and `snakemake` of the environment by their names.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: help run dataset sweep screen test verify drill peers docs lint clean distclean system-packages
+.PHONY: help install run dataset sweep screen test verify drill peers docs notebooks lint clean distclean system-packages
 
 help: ## List the targets (the default).
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+install: .venv/pagd-installed ## Install pagd into .venv with what it needs; minutes, once.
+	@echo "Installed. Go on with: . .venv/bin/activate"
 
 run: .venv/pagd-installed ## Do all of it: training designs, generated designs, simulation, pictures, page; into results/.
 	python workflow/scripts/run_alone.py --profile profiles/default --cores $(CORES)
@@ -53,6 +56,9 @@ peers: .venv/pagd-installed ## Compare with CalculiX, FElupe and NGSolve: sectio
 docs: .venv/pagd-installed ## Write the documentation as a site for any browser: build/docs/index.html.
 	python -m sphinx -c docs/site -W --keep-going -q . build/docs
 	@echo "Open build/docs/index.html."
+
+notebooks: .venv/pagd-installed ## Execute docs/notebooks, to look at with their pictures: build/notebooks/*.html.
+	python -m nbconvert --execute --to html --output-dir build/notebooks docs/notebooks/*.ipynb
 
 lint: .venv/pagd-installed ## Check style, types and workflow.
 	ruff check .

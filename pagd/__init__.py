@@ -7,12 +7,17 @@
     generated = generate(ReducedSpaceMixture().fit(plane), 100, training=data.designs)
     generated.designs["mode"].value_counts()
 
+In a notebook a design and the result of a simulation show themselves as pictures:
+
+    pagd.simulate(pagd.read_designs({"table2": "config/table2.csv"})["mixed"], pressure_kPa=20)
+
 What is listed in ``__all__`` is imported when it is asked for: ``import pagd`` alone costs nothing.
 """
 
 from __future__ import annotations
 
 import importlib
+import sys
 
 # As `typing` has it, whose import would take as long as all else that a served command imports.
 TYPE_CHECKING = False
@@ -24,7 +29,7 @@ if TYPE_CHECKING:
     from pagd.dataset.frame import designs_of, frame_of, read_frame, write_frame
     from pagd.dataset.make import Dataset, make_dataset
     from pagd.dataset.sampling import sample_designs
-    from pagd.design import Design, GeometryRules
+    from pagd.design import Design, GeometryRules, violations
     from pagd.diversity import novelty
     from pagd.embedding.linear import FullSpace, PrincipalComponents
     from pagd.embedding.quality import quality_of
@@ -34,7 +39,9 @@ if TYPE_CHECKING:
     from pagd.generators.gaussian import FullSpaceMixture, PlainMixture, ReducedSpaceMixture
     from pagd.generators.generate import Generated, generate
     from pagd.generators.kernel_density import KernelDensityGenerator
+    from pagd.result import Result, read_result
     from pagd.selection import choose
+    from pagd.simulation import simulate
 
 __version__ = "0.1.0"
 
@@ -43,7 +50,7 @@ _HOMES = {
     "pagd.dataset.frame": ("designs_of", "frame_of", "read_frame", "write_frame"),
     "pagd.dataset.make": ("Dataset", "make_dataset"),
     "pagd.dataset.sampling": ("sample_designs",),
-    "pagd.design": ("Design", "GeometryRules"),
+    "pagd.design": ("Design", "GeometryRules", "violations"),
     "pagd.diversity": ("novelty",),
     "pagd.embedding.linear": ("FullSpace", "PrincipalComponents"),
     "pagd.embedding.quality": ("quality_of",),
@@ -53,7 +60,10 @@ _HOMES = {
     "pagd.generators.gaussian": ("FullSpaceMixture", "PlainMixture", "ReducedSpaceMixture"),
     "pagd.generators.generate": ("Generated", "generate"),
     "pagd.generators.kernel_density": ("KernelDensityGenerator",),
+    "pagd.notebook": ("load_ipython_extension",),
+    "pagd.result": ("Result", "read_result"),
     "pagd.selection": ("choose",),
+    "pagd.simulation": ("simulate",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -72,6 +82,7 @@ __all__ = [
     "RandomSampling",
     "ReducedSpaceMixture",
     "Resampling",
+    "Result",
     "choose",
     "designs_of",
     "frame_of",
@@ -81,7 +92,10 @@ __all__ = [
     "quality_of",
     "read_designs",
     "read_frame",
+    "read_result",
     "sample_designs",
+    "simulate",
+    "violations",
     "write_frame",
 ]
 
@@ -94,3 +108,8 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted([*globals(), *__all__])
+
+
+# In a notebook designs show themselves as pictures; elsewhere this is one look into a dictionary.
+if "IPython" in sys.modules:
+    importlib.import_module("pagd.notebook").show_pictures()

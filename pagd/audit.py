@@ -10,6 +10,7 @@ from pathlib import Path
 from pagd.errors import InputError
 from pagd.files import is_abandoned
 from pagd.inventory import damages
+from pagd.long_work import counted
 from pagd.record import read_record
 
 __all__ = ["Finding", "abandoned", "discard", "findings", "wanted_again"]
@@ -44,7 +45,8 @@ def findings(results: Path, *, thorough: bool) -> Iterator[Finding]:
     InputError
         If there is no such folder.
     """
-    for folder in _stage_folders(results):
+    folders = list(_stage_folders(results))
+    for folder in counted(folders, "files of a run", len(folders), "folders"):
         try:
             record = read_record(folder)
         except InputError as error:

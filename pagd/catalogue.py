@@ -19,7 +19,7 @@ from pagd.families import PNEUNET, Actuator, PneuNet, actuator_of, family_named
 from pagd.families.parameters import schema_of
 from pagd.validation import check, check_by, check_each
 
-__all__ = ["NamedDesign", "design_from", "name_from", "read_designs", "read_pneunets"]
+__all__ = ["NamedDesign", "design_from", "design_of", "name_from", "read_designs", "read_pneunets"]
 
 
 # A tenth of the smallest side of the sampling box, and more than the largest one is in metres.
@@ -81,9 +81,20 @@ def design_from(source: str) -> NamedDesign:
     given, file = read_document(source, "design")
     name = name_from(Path(file))
     where = f"design {file or given.get('name', name)}"
-    row = _with_family(where, {"name": name, "origin": "own", **given})
-    _check_row(where, row)
-    return NamedDesign.from_row(row)
+    return design_of({"name": name, "origin": "own", **given}, where)
+
+
+def design_of(row: Mapping[str, Any], where: str) -> NamedDesign:
+    """Return the design of a row with name and origin; ``InputError``, with where, if it is none.
+
+    Raises
+    ------
+    InputError
+        Naming every fault of the row.
+    """
+    checked = _with_family(where, row)
+    _check_row(where, checked)
+    return NamedDesign.from_row(checked)
 
 
 def name_from(file: Path) -> str:

@@ -42,6 +42,7 @@ SECTIONS = {
     "screening": ("channel", "limits", "mesh", "solve", "metrics"),
     "fronts": ("screening",),
     "figures": ("figures",),
+    "export": ("geometry",),
     "dataset": ("channel", "limits", "dataset"),
     "embedding": ("embedding",),
     "generate": ("channel", "limits", "generator"),

@@ -44,8 +44,14 @@ def must_exist(file: Path) -> None:
 
 @contextmanager
 def replaced_file(path: Path) -> Iterator[Path]:
-    """Yield a temporary path beside ``path``; it replaces ``path`` unless the block raises."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    """Yield a temporary path beside ``path``; it replaces ``path`` unless the block raises.
+
+    Raises
+    ------
+    InputError
+        If its folder cannot be made: something on the way is a file, or not the user's.
+    """
+    _make_folder_of(path)
     _remove_abandoned(path, path.suffix)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=_own(path), suffix=path.suffix)
     os.close(handle)
@@ -92,10 +98,10 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If ``path`` exists and is neither empty nor marked.
+        If ``path`` exists and is neither empty nor marked, or cannot be made.
     """
     _refuse_foreign(path, marker)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    _make_folder_of(path)
     _remove_abandoned(path)
     temporary = Path(tempfile.mkdtemp(dir=path.parent, prefix=_own(path)))
     older: Path | None = None
@@ -116,6 +122,13 @@ def replaced_folder(path: Path, marker: str) -> Iterator[Path]:
         shutil.rmtree(temporary, ignore_errors=True)
         if older is not None:
             shutil.rmtree(older, ignore_errors=True)
+
+
+def _make_folder_of(path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError, PermissionError) as error:
+        raise InputError(f"{path}: cannot be made ({error.strerror}: {error.filename}).") from None
 
 
 def _flush(path: Path) -> None:

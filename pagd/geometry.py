@@ -25,11 +25,19 @@ from pagd.families import Actuator, actuator_of
 from pagd.files import replaced_file, write_text
 from pagd.limits import die_with_parent
 
-__all__ = ["Part", "openscad_version", "render", "write_design_scad"]
+__all__ = [
+    "Part",
+    "openscad_version",
+    "parts_of_model",
+    "render",
+    "render_model",
+    "write_design_scad",
+]
 
-Part = Literal["body", "base", "cavity"]
+Part = Literal["body", "base", "cavity", "mould_outside", "mould_core", "mould_base"]
 
 _SETTING = re.compile(r"^(?P<name>\w+) = (?P<value>[^;]+);(?: // \[(?P<range>[^\]:]+:[^\]]+)\])?$")
+_PARTS = re.compile(r'^part = "\w+"; // \[(?P<names>[\w, ]+)\]$')
 _CANNOT_RUN = (126, 127)
 # A binary STL file: 80 bytes of title, the number of facets, and a record each.
 _STL_HEADER = 84
@@ -74,11 +82,13 @@ def render(
     design, rules
         What to make; checked before anything is run.
     part
-        "body" (above the paper plane, hollow), "base" (below it) or "cavity" (the air).
+        "body" (above the paper plane, hollow), "base" (below it) or "cavity" (the air); of the
+        moulds "mould_outside" (around the chambers), "mould_core" (the air on a plate) and
+        "mould_base" (a tray as deep as the base).
     path
         The STL file; it appears only when it is complete.
     half
-        Only y > 0, cut open at the plane of symmetry; for symmetric designs.
+        Only y > 0, cut open at the plane of symmetry; for symmetric designs, and not for moulds.
     time_limit
         Seconds after which OpenSCAD is ended.
 
@@ -95,14 +105,33 @@ def render(
     if half and not actuator.is_symmetric:
         told = ", ".join(f"{symbol} = {value:g}" for symbol, value in actuator.as_dict().items())
         raise InputError(f"A design that is not symmetric has no half model ({told}).")
-    program = _openscad()
-    with tempfile.TemporaryDirectory(prefix="pagd-") as folder, replaced_file(path) as target:
+    with tempfile.TemporaryDirectory(prefix="pagd-") as folder:
         model = Path(folder) / "design.scad"
         write_design_scad(actuator, rules, model)
-        command = [program, "-q", "--export-format", "binstl", "-o", str(target)]
+        render_model(model, part, path, half=half, time_limit=time_limit)
+
+
+def render_model(
+    model: Path, part: str, path: Path, *, half: bool = False, time_limit: float = 120.0
+) -> None:
+    """Write one part of an OpenSCAD model, by the name that its setting ``part`` has for it.
+
+    ``path``, ``half``, ``time_limit`` and what is raised are those of :func:`render`.
+    """
+    with replaced_file(path) as target:
+        command = [_openscad(), "-q", "--export-format", "binstl", "-o", str(target)]
         command += ["-D", f'part="{part}"', "-D", f"half={str(half).lower()}", str(model)]
-        _run(command, time_limit, f"the {part}")
+        _run(command, time_limit, f"the {part.replace('_', ' ')}")
         _sort_facets(target)
+
+
+def parts_of_model(model: Path) -> tuple[str, ...]:
+    """Return the parts that an OpenSCAD model lists beside its setting ``part``."""
+    for line in model.read_text(encoding="utf-8").splitlines():
+        found = _PARTS.match(line)
+        if found is not None:
+            return tuple(name.strip() for name in found["names"].split(","))
+    return ()
 
 
 def openscad_version() -> str:

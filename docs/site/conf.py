@@ -6,6 +6,9 @@ import re
 import shutil
 from pathlib import Path
 
+import nbformat
+from myst_parser.parsers.sphinx_ import MystParser
+
 from pagd import __version__
 
 project = "pagd"
@@ -28,6 +31,7 @@ include_patterns = [
     "config/README.md",
     "results/README.md",
     "docs/*.md",
+    "docs/notebooks/*.ipynb",
     "docs/api/*.rst",
 ]
 exclude_patterns = ["docs/site", ".venv"]
@@ -67,13 +71,24 @@ _CONTENTS = """
 :hidden:
 :caption: Using it
 
+docs/quick-start
 docs/command-line
+docs/report
 docs/workflow
 docs/sweeps
 docs/dataset
 docs/data
 config/README
 results/README
+```
+
+```{toctree}
+:hidden:
+:caption: Notebooks
+
+docs/notebooks/own_actuator
+docs/notebooks/paper_to_figures
+docs/notebooks/compare_generators
 ```
 
 ```{toctree}
@@ -144,8 +159,32 @@ def _bars_escaped(line):
     return "``".join(part if i % 2 else part.replace("|", "\\|") for i, part in enumerate(parts))
 
 
+class Notebook(MystParser):
+    """Notebooks as pages: their texts and code; what they show, `make notebooks` makes."""
+
+    supported = ("notebook",)
+
+    def parse(self, inputstring, document):
+        """Parse the cells as Markdown."""
+        cells = nbformat.reads(inputstring, as_version=4).cells
+        first, *others = [_as_markdown(cell) for cell in cells]
+        super().parse("\n\n".join([first, _NOTICE, *others]), document)
+
+
+_NOTICE = """```{note}
+This is a notebook of the repository, without its outputs: open it in Jupyter from
+`docs/notebooks`, or have all of them executed by `make notebooks`.
+```"""
+
+
+def _as_markdown(cell):
+    return cell.source if cell.cell_type == "markdown" else f"```python\n{cell.source}\n```"
+
+
 def setup(app):
     """Connect what this file adds."""
+    app.add_source_suffix(".ipynb", "notebook")
+    app.add_source_parser(Notebook)
     # Before napoleon, which reads the sections.
     app.connect("autodoc-process-docstring", tidy, priority=400)
     app.connect("source-read", add_contents)

@@ -10,6 +10,7 @@ from pagd.figures.deformed import draw_deformed
 from pagd.figures.gallery import draw_gallery
 from pagd.figures.load import has_states
 from pagd.inventory import read_sound_record
+from pagd.long_work import counted
 
 __all__ = ["GALLERY", "draw_sample", "sample_of"]
 
@@ -50,5 +51,5 @@ def draw_sample(sample: Mapping[str, Path], archive: Path) -> None:
             read_sound_record(folder / stage)
     (archive / GALLERY).parent.mkdir()
     draw_gallery(list(sample.values()), archive / GALLERY)
-    for identity, folder in sample.items():
+    for identity, folder in counted(sample.items(), "drawing", len(sample), "designs"):
         draw_deformed(folder, (archive / GALLERY).with_name(f"{identity}.png"))

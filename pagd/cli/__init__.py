@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -14,8 +15,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
     0: done (with ``--keep-going`` also for a design that failed and left its record).
-    1: the design failed; the reason is in its record and on stderr.
+    1: the design failed; the reason is in its record and on stderr. Or a check has found something.
     2: bad input; one sentence on stderr.
+    75: the machine failed, not the design; the same may succeed later.
     70: anything unforeseen, with a traceback: a fault of pagd, to be reported.
     130: interrupted.
     """
@@ -26,4 +28,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Imported only here: a command that a server runs needs none of it.
     from pagd.cli.execute import execute
 
-    return execute(words)
+    return execute(words, at_terminal=sys.stderr.isatty() and os.environ.get("TERM") != "dumb")

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Sequence
+from dataclasses import asdict
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pagd.cli.answer import Answer
 from pagd.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,7 +22,7 @@ __all__ = ["archive", "check_archive"]
 _MOST_PICTURES = 100
 
 
-def archive(options: Namespace) -> int:
+def archive(options: Namespace) -> Answer:
     """Write the data set that a run leaves; 1 if it breaks a rule."""
     from pagd.archive.packing import check_target, pack
     from pagd.archive.writing import write_archive
@@ -34,7 +36,8 @@ def archive(options: Namespace) -> int:
     )
     if options.zip is not None:
         pack(options.out, options.zip)
-    return _told(found, f"{options.out} is written")
+    code = _told(found, f"{options.out} is written")
+    return Answer(code, {"folder": options.out, "zip": options.zip, "rules": _rules(found)})
 
 
 def _date(text: str | None) -> date | None:
@@ -44,7 +47,7 @@ def _date(text: str | None) -> date | None:
         raise InputError(f"--date = {text!r} must be a date such as 2026-01-31.") from None
 
 
-def check_archive(options: Namespace) -> int:
+def check_archive(options: Namespace) -> Answer:
     """Check a data set: its checksums, its metadata and its tables; 1 if anything is wrong."""
     from pagd.archive.packing import unpacked
 
@@ -52,7 +55,7 @@ def check_archive(options: Namespace) -> int:
         return _checked(folder, options.archive)
 
 
-def _checked(folder: Path, told: Path) -> int:
+def _checked(folder: Path, told: Path) -> Answer:
     from pagd.archive.checks import check_tables
     from pagd.archive.provenance import PROVENANCE
     from pagd.archive.reading import read_tables
@@ -64,7 +67,7 @@ def _checked(folder: Path, told: Path) -> int:
         print(f"{name} is missing, or not what its checksum says.")
     if any(name == PROVENANCE or name.startswith("data/") for name in changed):
         print(f"{told} is damaged: what it says is not looked at.")
-        return 1
+        return Answer(1, {"changed": changed})
     faults = faults_of_metadata(folder)
     for fault in faults:
         print(f"croissant.json: {fault}")
@@ -72,8 +75,14 @@ def _checked(folder: Path, told: Path) -> int:
     unknown = faults_of_provenance(folder, tables["performance"])
     for fault in unknown:
         print(f"provenance.json: {fault}")
-    code = _told(check_tables(tables), f"{told} is read")
-    return 1 if changed or faults or unknown else code
+    found = check_tables(tables)
+    code = _told(found, f"{told} is read")
+    document = {"changed": changed, "faults": [*faults, *unknown], "rules": _rules(found)}
+    return Answer(1 if changed or faults or unknown else code, document)
+
+
+def _rules(found: Sequence[Finding]) -> list[dict[str, object]]:
+    return [asdict(one) for one in found]
 
 
 def _told(found: Sequence[Finding], done: str) -> int:

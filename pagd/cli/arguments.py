@@ -6,7 +6,12 @@ import argparse
 import importlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from pagd.cli.examples import EXAMPLES
+
+if TYPE_CHECKING:
+    from pagd.cli.answer import Answer
 
 __all__ = [
     "add_command",
@@ -23,19 +28,28 @@ __all__ = [
 def add_command(commands: Any, name: str, handler: str, text: str) -> argparse.ArgumentParser:
     """Add a subcommand; its handler is a function of ``commands``, or ``module:function``."""
     command: argparse.ArgumentParser = commands.add_parser(
-        name, help=text, description=text[0].upper() + text[1:] + "."
+        name,
+        help=text,
+        description=text[0].upper() + text[1:] + ".",
+        epilog=f"example:\n  {EXAMPLES[name]}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    command.set_defaults(handler=_lazy(handler))
+    command.set_defaults(handler=_lazy(handler), parser=command)
+    command.add_argument(
+        "--json",
+        action="store_true",
+        help="one JSON document to stdout, all else to stderr",
+    )
     return command
 
 
-def _lazy(handler: str) -> Callable[[argparse.Namespace], int]:
+def _lazy(handler: str) -> Callable[[argparse.Namespace], Answer]:
     home, _, function = handler.rpartition(":")
 
-    def call(options: argparse.Namespace) -> int:
+    def call(options: argparse.Namespace) -> Answer:
         module = importlib.import_module(f"pagd.cli.{home or 'commands'}")
-        code: int = getattr(module, function)(options)
-        return code
+        answer: Answer = getattr(module, function)(options)
+        return answer
 
     return call
 
@@ -50,7 +64,8 @@ def add_folder(command: argparse.ArgumentParser, stage: str, *, required: bool) 
 def override(group: Any, section: str, key: str, kind: type, text: str) -> None:
     """Add an option that stands for a key of the configuration."""
     option = f"--{key.replace('_', '-')}"
-    group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar="VALUE", help=text)
+    metavar = "NAME" if kind is str else "NUMBER"
+    group.add_argument(option, dest=f"{section}.{key}", type=kind, metavar=metavar, help=text)
 
 
 def add_materials(command: argparse.ArgumentParser) -> Any:
@@ -112,7 +127,8 @@ def add_config(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--config",
         metavar="FILE",
-        help="configuration: a YAML file or JSON text; what it lacks keeps its default",
+        help="configuration: a YAML file or JSON text; what it lacks keeps its default, of "
+        "config/README.md",
     )
 
 

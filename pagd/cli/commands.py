@@ -6,73 +6,76 @@ Stages are imported where they are used: each needs libraries that the others do
 from __future__ import annotations
 
 import re
-import sys
 from argparse import Namespace
 from pathlib import Path
 
 from pagd.catalogue import design_from
-from pagd.cli.options import checked_threads, config_of
-from pagd.cli.output import print_design, print_result, progress_to, verdict
+from pagd.cli.answer import Answer
+from pagd.cli.options import checked_threads, config_of, design_of, refuse_beside
+from pagd.cli.output import design_document, print_design, print_result, steps_of_solve, verdict
 from pagd.errors import InputError
 
 __all__ = [
     "check_design",
     "deck",
+    "export",
     "figures",
     "geometry",
     "mesh",
     "metrics",
     "repair",
-    "report",
     "run_all",
     "show_design",
     "solve",
-    "summary",
-    "view",
 ]
 
 # Of a deck's steps to each recorded pressure, as a share of the step.
 _FIRST_INCREMENT = 0.25
 
 
-def check_design(options: Namespace) -> int:
+def check_design(options: Namespace) -> Answer:
     """Tell every rule that a design breaks; 1 if it breaks any."""
     from pagd.stages.geometry import rules_of
 
-    named = design_from(options.design)
-    broken = named.actuator.violations(rules_of(config_of(options)))
-    for violation in broken:
-        print(violation)
-    print(f"{named.name}: {'cannot be built' if broken else 'can be built'}")
-    return 1 if broken else 0
+    found = design_document(design_from(options.design), rules_of(config_of(options)))
+    for violation in found["violations"]:
+        print(violation["message"])
+    print(f"{found['name']}: {'can' if found['can_be_built'] else 'cannot'} be built")
+    return Answer(0 if found["can_be_built"] else 1, found)
 
 
-def show_design(options: Namespace) -> int:
+def show_design(options: Namespace) -> Answer:
     """Print a design's parameters and what follows from them."""
     from pagd.stages.geometry import rules_of
 
-    print_design(design_from(options.design), rules_of(config_of(options)))
-    return 0
+    named = design_from(options.design)
+    found = design_document(named, rules_of(config_of(options)))
+    print_design(named, found)
+    return Answer(0, found)
 
 
-def geometry(options: Namespace) -> int:
+def geometry(options: Namespace) -> Answer:
     """Run the stage geometry."""
     from pagd.stages import geometry as stage
 
-    record = stage.run(design_from(options.design), options.out, config_of(options))
-    return verdict(record, options.keep_going)
+    named = design_from(design_of(options))
+    record = stage.run(named, options.out, config_of(options))
+    return verdict(record, options.out, options.keep_going)
 
 
-def repair(options: Namespace) -> int:
+def repair(options: Namespace) -> Answer:
     """Run the stage repair."""
     from pagd.stages import repair as stage
 
     record = stage.run(options.geometry, options.out, config_of(options))
-    return verdict(record, options.keep_going)
+    return verdict(record, options.out, options.keep_going)
 
 
-def mesh(options: Namespace) -> int:
-    """Run the stage mesh, on a design's surfaces or on the user's own."""
+def mesh(options: Namespace) -> Answer:
+    """Run the stage mesh, on surfaces of ours or of the user, or all stages up to it."""
+    if options.design:
+        refuse_beside(options, "a design", "geometry", "repair", "body", "base", "half", "name")
+        return _chain(options, "mesh")
     from pagd.stages import mesh as stage
 
     config = config_of(options)
@@ -82,12 +85,18 @@ def mesh(options: Namespace) -> int:
     elif options.geometry and options.repair:
         record = stage.run(options.geometry, options.repair, options.out, config)
     else:
-        raise InputError("mesh needs either --geometry and --repair, or --body and --base.")
-    return verdict(record, options.keep_going)
+        raise InputError("mesh needs a design, or --geometry and --repair, or --body and --base.")
+    return verdict(record, options.out, options.keep_going)
 
 
-def solve(options: Namespace) -> int:
-    """Run the stage solve, on a mesh of ours or on the user's own."""
+def solve(options: Namespace) -> Answer:
+    """Run the stage solve, on a mesh of ours or of the user, or all stages up to it."""
+    if options.design:
+        refuse_beside(options, "a design", "mesh", "name")
+        return _chain(options, "solve")
+    if not options.mesh:
+        raise InputError("solve needs a design, as a YAML file, or a mesh: --mesh.")
+    refuse_beside(options, "--mesh", *(name for name in vars(options) if name.startswith("mesh.")))
     threads = checked_threads(options.threads)
     from pagd.stages import solve as stage
 
@@ -99,13 +108,13 @@ def solve(options: Namespace) -> int:
         stage.materials_of(config, options.material, options.paper),
         name=_name(options),
         vtu=options.vtu,
-        progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
+        progress=steps_of_solve(),
         threads=threads,
     )
-    return verdict(record, options.keep_going)
+    return verdict(record, options.out, options.keep_going)
 
 
-def deck(options: Namespace) -> int:
+def deck(options: Namespace) -> Answer:
     """Write an input deck with the materials and recorded pressures of a configuration."""
     from pagd.actuation import Actuation
     from pagd.deck import write_deck
@@ -130,10 +139,10 @@ def deck(options: Namespace) -> int:
         sheet_element=options.sheet_element,
         stress_unit=options.stress_unit,
     )
-    return 0
+    return Answer(0, {"file": options.out, "pressures_kPa": wanted})
 
 
-def metrics(options: Namespace) -> int:
+def metrics(options: Namespace) -> Answer:
     """Run the stage metrics."""
     from pagd.stages import metrics as stage
 
@@ -144,78 +153,50 @@ def metrics(options: Namespace) -> int:
     )
     record = stage.run(folders, options.out, config_of(options), options.sections)
     print_result(record)
-    return verdict(record, options.keep_going)
+    return verdict(record, options.out, options.keep_going)
 
 
-def figures(options: Namespace) -> int:
+def figures(options: Namespace) -> Answer:
     """Run the stage figures."""
     from pagd.stages import figures as stage
 
     record = stage.run(options.design_folder, options.out, config_of(options))
-    return verdict(record, options.keep_going)
+    return verdict(record, options.out, options.keep_going)
 
 
-def summary(options: Namespace) -> int:
-    """Write the tables of designs, of those that came as far as the metrics."""
-    from pagd.record import RECORD_NAME
-    from pagd.summary import write_gathered, write_summary
+def export(options: Namespace) -> Answer:
+    """Run the stage export."""
+    from pagd.stages import export as stage
 
-    folders = options.design_folders
-    there = [folder for folder in folders if (folder / "metrics" / RECORD_NAME).is_file()]
-    measured = [folder / "metrics" for folder in there]
-    novelty: dict[str, float] = {}
-    if options.dataset:
-        from pagd.stages.novelty import novelty_of
-
-        novelty = novelty_of([folder / "geometry" for folder in there], options.dataset)
-    performance, table = options.out / "performance.parquet", options.out / "summary.csv"
-    write_summary(measured, performance, table, novelty)
-    write_gathered(measured, options.out)
-    print(f"{len(measured)} of {len(folders)} designs have a record of their metrics.")
-    return 0
+    record = stage.run(options.design_folder, options.out, config_of(options))
+    return verdict(record, options.out, options.keep_going)
 
 
-def report(options: Namespace) -> int:
-    """Write the page of designs."""
-    from pagd.figures.page import write_page
-
-    write_page(options.design_folders, options.out)
-    return 0
-
-
-def view(options: Namespace) -> int:
-    """Write the page of designs beside the first of them, and show it in the browser."""
-    import webbrowser
-
-    from pagd.figures.page import write_page
-
-    first: Path = options.design_folders[0]
-    page = options.out or first.resolve().with_name(f"{first.resolve().name}.html")
-    write_page(options.design_folders, page)
-    print(page)
-    if not options.no_browser and not webbrowser.open(page.resolve().as_uri()):
-        print("pagd: no browser was found; open the page in one.", file=sys.stderr)
-    return 0
-
-
-def run_all(options: Namespace) -> int:
+def run_all(options: Namespace) -> Answer:
     """Run all stages of one design, each in a folder of its own under ``--out``."""
-    threads = checked_threads(options.threads)
+    return _chain(options, "figures")
+
+
+def _chain(options: Namespace, last: str) -> Answer:
+    """Run the stages of one design up to the ``last``, each in its own folder under ``--out``."""
+    threads = checked_threads(vars(options).get("threads", 1))
     from pagd.stages import chain
     from pagd.stages.solve import materials_of
 
     config = config_of(options)
+    given = vars(options)
     record = chain.run(
         design_from(options.design),
         options.out,
         config,
-        materials_of(config, options.material, options.paper),
-        vtu=options.vtu,
-        progress=progress_to(config["solve"]["maximum_pressure_kPa"]),
+        materials_of(config, given.get("material"), given.get("paper")),
+        last=last,
+        vtu=given.get("vtu", False),
+        progress=steps_of_solve(),
         threads=threads,
     )
     print_result(record)
-    return verdict(record, options.keep_going)
+    return verdict(record, options.out / record.stage, options.keep_going)
 
 
 def _name(options: Namespace) -> str | None:

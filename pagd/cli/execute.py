@@ -8,6 +8,8 @@ import sys
 import traceback
 from collections.abc import Sequence
 
+from pagd.bars import bars
+from pagd.cli.answer import Answer, json_text, only_answer_on_stdout
 from pagd.cli.options import limits_of
 from pagd.cli.output import start_log
 from pagd.cli.parser import make_parser
@@ -23,14 +25,40 @@ FAILED, BAD_INPUT, FAULT, AGAIN, INTERRUPTED = 1, 2, os.EX_SOFTWARE, os.EX_TEMPF
 _OF_MACHINE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EMFILE, errno.ENFILE)
 
 
-def execute(arguments: Sequence[str]) -> int:
-    """Run a command line in this process and return its exit code, as :func:`pagd.cli.main`."""
-    options = make_parser().parse_args(arguments)
-    start_log(options.verbose)
+def execute(arguments: Sequence[str], *, at_terminal: bool = False) -> int:
+    """Run a command line in this process and return its exit code, as :func:`pagd.cli.main`.
+
+    Parameters
+    ----------
+    arguments
+        The words behind ``pagd``.
+    at_terminal
+        Show bars on stderr for long work.
+    """
+    if not arguments:
+        make_parser().print_help(sys.stderr)
+        return BAD_INPUT
+    as_json = "--json" in arguments
     try:
-        with under(limits_of(options)):
-            code: int = options.handler(options)
-        return code
+        with only_answer_on_stdout(as_json):
+            answer = _answered(arguments, at_terminal)
+        if as_json:
+            print(json_text(answer.document), flush=True)
+    except BrokenPipeError:
+        # Whoever reads has read enough (`pagd status | head`); nor can anything be told at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    return answer.code
+
+
+def _answered(arguments: Sequence[str], at_terminal: bool) -> Answer:
+    """Call the subcommand; what it raises is an answer too."""
+    try:
+        options = make_parser().parse_args(arguments)
+        start_log(options.verbose)
+        with under(limits_of(options)), bars(at_terminal):
+            answer: Answer = options.handler(options)
+        return answer
     except InputError as error:
         return _complain(error, BAD_INPUT)
     except StageFailure as failure:
@@ -40,9 +68,7 @@ def execute(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        # Whoever reads has read enough (`pagd status | head`); nor can anything be told at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno in _OF_MACHINE:
             return _complain(f"{error}; nothing half-written is left", AGAIN)
@@ -53,6 +79,6 @@ def execute(arguments: Sequence[str]) -> int:
         return _complain("this is a fault of pagd; please report it", FAULT)
 
 
-def _complain(what: object, code: int) -> int:
+def _complain(what: object, code: int) -> Answer:
     print(f"pagd: {what}", file=sys.stderr)
-    return code
+    return Answer(code, {"error": {"message": str(what), "exit_code": code}})

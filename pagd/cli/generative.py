@@ -6,13 +6,14 @@ from argparse import Namespace
 from collections.abc import Mapping
 from typing import Any
 
+from pagd.cli.answer import Answer, answer_of
 from pagd.cli.options import checked_threads, config_of
 from pagd.errors import InputError
 
 __all__ = ["dataset", "diversity", "embed", "generate", "sample", "screen", "select"]
 
 
-def dataset(options: Namespace) -> int:
+def dataset(options: Namespace) -> Answer:
     """Run the stage dataset."""
     from pagd.stages import dataset as stage
 
@@ -31,10 +32,10 @@ def dataset(options: Namespace) -> int:
     )
     for note in found["notes"]:
         print(note)
-    return 0
+    return answer_of(record, options.out)
 
 
-def embed(options: Namespace) -> int:
+def embed(options: Namespace) -> Answer:
     """Run the stage embedding."""
     from pagd.stages import embedding as stage
 
@@ -51,10 +52,10 @@ def embed(options: Namespace) -> int:
             else f"is off by {found['round_trip_error']:.2g} standard deviations."
         )
     )
-    return 0
+    return answer_of(record, options.out)
 
 
-def generate(options: Namespace) -> int:
+def generate(options: Namespace) -> Answer:
     """Run the stage generate; without a data set or an embedding it makes them first."""
     from pagd.stages import generate as stage
 
@@ -74,10 +75,10 @@ def generate(options: Namespace) -> int:
         f"{found['designs']} designs ({_listed(shares)}) in {options.out}, of "
         f"{found['proposed']} proposed; novelty {found['novelty_mean']:.3f}."
     )
-    return 0
+    return answer_of(record, options.out)
 
 
-def diversity(options: Namespace) -> int:
+def diversity(options: Namespace) -> Answer:
     """Run the stage diversity."""
     from pagd.stages import diversity as stage
 
@@ -96,10 +97,10 @@ def diversity(options: Namespace) -> int:
         print(f"{name}: novelty {novelty:.3f}{hull}")
     for name, reason in found["left_out"].items():
         print(f"{name}: left out ({reason})")
-    return 0
+    return answer_of(record, options.out)
 
 
-def screen(options: Namespace) -> int:
+def screen(options: Namespace) -> Answer:
     """Run the stage screening."""
     checked_threads(options.processes, "--processes")
     from pagd.catalogue import read_pneunets
@@ -122,10 +123,10 @@ def screen(options: Namespace) -> int:
         f"{found['designs']} designs ({_listed(found['statuses'])}) in {options.out}, "
         f"{found['cpu_s_median']:.2f} core-s each in the median."
     )
-    return 0
+    return answer_of(record, options.out)
 
 
-def sample(options: Namespace) -> int:
+def sample(options: Namespace) -> Answer:
     """Write a table of random designs of a family."""
     import numpy as np
 
@@ -148,10 +149,10 @@ def sample(options: Namespace) -> int:
     )
     write_text(options.out, library.table_of(designs, f"{name_from(options.out)}_"))
     print(f"{len(designs)} designs in {options.out}")
-    return 0
+    return Answer(0, {"file": options.out, "family": options.family, "designs": len(designs)})
 
 
-def select(options: Namespace) -> int:
+def select(options: Namespace) -> Answer:
     """Run the stage selection."""
     from pagd.stages import selection as stage
 
@@ -162,7 +163,7 @@ def select(options: Namespace) -> int:
         f"{found['designs']} of {found['candidates']} designs{modes} "
         f"in {options.out / stage.SELECTION_NAME}"
     )
-    return 0
+    return answer_of(record, options.out)
 
 
 def _tell_what_is_made(options: Namespace, config: Mapping[str, Any]) -> None:

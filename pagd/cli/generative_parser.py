@@ -19,6 +19,8 @@ from pagd.design import MODES
 
 __all__ = ["add_generative"]
 
+_GENERATORS = ("gmm", "gmm_plain", "gmm_full", "kde", "random", "resample")
+
 
 def add_generative(commands: Any) -> None:
     """Add the subcommands that work on many designs at once."""
@@ -57,7 +59,10 @@ def _add_embed(commands: Any) -> None:
 
 def _add_generate(commands: Any) -> None:
     command = add_command(
-        commands, "generate", "generative:generate", "new designs, valid and none a copy"
+        commands,
+        "generate",
+        "generative:generate",
+        "new designs, all of them buildable and none a copy",
     )
     # Without them they are made, in the folder of the command.
     add_folder(command, "dataset", required=False)
@@ -68,19 +73,28 @@ def _add_generate(commands: Any) -> None:
         help="take designs of this mode only (default: as they come)",
     )
     group = _overrides(command)
-    for names, key, kind, text in (
-        (("-n", "--designs"), "designs", int, "number of designs"),
-        (("--generator",), "method", str, "gmm, gmm_plain, gmm_full, kde, random or resample"),
-        (("--seed",), "seed", int, "seed of the fit and the draws"),
+    for names, key, kind, metavar, text in (
+        (("-n", "--designs"), "designs", int, "N", "number of designs"),
+        (
+            ("--generator",),
+            "method",
+            str,
+            "NAME",
+            "gmm, gmm_plain, gmm_full, kde, random or resample",
+        ),
+        (("--seed",), "seed", int, "NUMBER", "seed of the fit and the draws"),
     ):
-        group.add_argument(*names, dest=f"generator.{key}", type=kind, metavar="VALUE", help=text)
+        group.add_argument(*names, dest=f"generator.{key}", type=kind, metavar=metavar, help=text)
     _add_threads(command)
     _add_set_options(command)
 
 
 def _add_diversity(commands: Any) -> None:
     command = add_command(
-        commands, "diversity", "generative:diversity", "how new and varied, beside other generators"
+        commands,
+        "diversity",
+        "generative:diversity",
+        "how new and varied generated designs are",
     )
     for stage in ("dataset", "embedding", "generated"):
         add_folder(command, stage, required=True)
@@ -100,7 +114,7 @@ def _add_select(commands: Any) -> None:
         add_folder(command, stage, required=True)
     group = _overrides(command)
     group.add_argument(
-        "-n", "--designs", dest="selection.designs", type=int, metavar="VALUE", help="how many"
+        "-n", "--designs", dest="selection.designs", type=int, metavar="N", help="number of designs"
     )
     override(group, "selection", "seed", int, "seed of the first choice")
     _add_set_options(command)
@@ -108,10 +122,16 @@ def _add_select(commands: Any) -> None:
 
 def _add_screen(commands: Any) -> None:
     command = add_command(
-        commands, "screen", "generative:screen", "many designs by one cell each: performance"
+        commands,
+        "screen",
+        "generative:screen",
+        "performance of a table of designs, by single chambers",
     )
     command.add_argument(
-        "designs", type=Path, help="table of designs: CSV, or Parquet as pagd writes it"
+        "designs",
+        type=Path,
+        metavar="TABLE",
+        help="table of designs: CSV, or Parquet as pagd writes it",
     )
     command.add_argument(
         "--fidelity",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from argparse import Namespace
 from pathlib import Path
 
 from pagd.catalogue import read_designs
+from pagd.cli.answer import Answer
 from pagd.cli.options import config_of
 from pagd.errors import InputError, Status
 from pagd.progress import Ended, Progress
@@ -20,7 +20,7 @@ _OF_WORKFLOW = Path("config/config.yaml")
 _NAMED = 10
 
 
-def status(options: Namespace) -> int:
+def status(options: Namespace) -> Answer:
     """Tell how far a run is."""
     from pagd.progress import progress_of
 
@@ -30,11 +30,9 @@ def status(options: Namespace) -> int:
     if options.config is None and _OF_WORKFLOW.is_file():
         options.config = str(_OF_WORKFLOW)
     found = progress_of(results, _asked_for(results, config_of(options)))
-    if options.json:
-        print(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    else:
+    if not options.json:
         _print_progress(found)
-    return 0
+    return Answer(0, found.as_dict())
 
 
 def _asked_for(results: Path, config: dict[str, object]) -> list[str]:
@@ -93,7 +91,7 @@ def _duration(hours: float) -> str:
     return f"{minutes // 60} h {minutes % 60:02d} min" if minutes >= 60 else f"{minutes} min"
 
 
-def audit(options: Namespace) -> int:
+def audit(options: Namespace) -> Answer:
     """Tell what is damaged in a run, and remove it where that is wanted; 1 if there is any."""
     from pagd.audit import abandoned, discard, findings, wanted_again
 
@@ -105,9 +103,14 @@ def audit(options: Namespace) -> int:
     for finding in found:
         print(f"{finding.folder}: {finding.why}")
     left = abandoned(results)
+    document: dict[str, object] = {
+        "findings": [{"folder": one.folder, "why": one.why} for one in found],
+        "abandoned": left,
+        "removed": [],
+    }
     if not options.discard:
         print(f"{len(found)} folders to make again, {len(left)} left by killed processes.")
-        return 1 if found else 0
+        return Answer(1 if found else 0, document)
     gone = discard(results, found)
     for path in left:
         if path.is_dir():
@@ -115,4 +118,4 @@ def audit(options: Namespace) -> int:
         else:
             path.unlink(missing_ok=True)
     print(f"{len(gone)} folders removed, and {len(left)} left by killed processes.")
-    return 0
+    return Answer(0, document | {"removed": gone})

@@ -9,7 +9,7 @@ from pagd import config as configuration
 from pagd.errors import InputError
 from pagd.limits import Limits
 
-__all__ = ["checked_threads", "config_of", "limits_of"]
+__all__ = ["checked_threads", "config_of", "design_of", "limits_of", "refuse_beside"]
 
 # Of what a job has been allotted, what is around the stage takes the rest: pagd itself, and on a
 # cluster Snakemake twice.
@@ -54,3 +54,19 @@ def limits_of(options: Namespace) -> Limits | None:
         memory_MB=max(memory - _AROUND_MB, _AROUND_MB),
         final=tries == 0,
     )
+
+
+def design_of(options: Namespace) -> str:
+    """Return the design, given as an argument or as an option; ``InputError`` unless by one."""
+    given = [one for one in (options.design, options.design_option) if one]
+    if len(given) != 1:
+        raise InputError("a design must be given once: a YAML or JSON file, or JSON text.")
+    return str(given[0])
+
+
+def refuse_beside(options: Namespace, what: str, *names: str) -> None:
+    """Refuse options that have no meaning beside ``what`` is given; ``names`` as parsed."""
+    for name in names:
+        if vars(options)[name]:
+            option = f"--{name.rpartition('.')[2].replace('_', '-')}"
+            raise InputError(f"{option} has no meaning beside {what}.")

@@ -4,15 +4,26 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
 
 from pagd.catalogue import NamedDesign
+from pagd.cli.answer import Answer, answer_of
 from pagd.design import GeometryRules
 from pagd.errors import Status
 from pagd.families import PNEUNET
+from pagd.long_work import is_shown
 from pagd.record import Record
 
-__all__ = ["print_design", "print_result", "progress_to", "start_log", "verdict"]
+__all__ = [
+    "design_document",
+    "print_design",
+    "print_result",
+    "start_log",
+    "steps_of_solve",
+    "verdict",
+]
 
 log = logging.getLogger(__name__)
 
@@ -28,44 +39,63 @@ def start_log(verbose: bool) -> None:
     logging.getLogger("pagd").setLevel(logging.DEBUG if verbose else logging.INFO)
 
 
-def progress_to(maximum_kPa: float) -> Callable[[float, int], None]:
-    """Return what tells how far a solve is: in place for a person, line by line for a file."""
-    if not sys.stderr.isatty():
-        return lambda pressure, count: log.info("%.4g kPa: iterations %d", pressure, count)
-
-    def show(pressure_kPa: float, iterations: int) -> None:
-        end = "\n" if pressure_kPa >= maximum_kPa else ""
-        print(f"\r{pressure_kPa:8.3f} of {maximum_kPa:g} kPa", end=end, file=sys.stderr, flush=True)
-
-    return show
+def steps_of_solve() -> Callable[[float, int], None] | None:
+    """Return what logs every step of a solve; nothing where a bar shows them."""
+    if is_shown():
+        return None
+    return lambda pressure, count: log.info("%.4g kPa: iterations %d", pressure, count)
 
 
-def verdict(record: Record, keep_going: bool) -> int:
-    """Return the exit code for how a design stands, and say on stderr why it is not ok."""
+def verdict(record: Record, folder: Path, keep_going: bool) -> Answer:
+    """Return the answer for how a design stands, and say on stderr why it is not ok."""
     if record.status is Status.ok:
-        return 0
+        return answer_of(record, folder)
     print(f"pagd: {record.design_id}: {record.status}: {record.reason}", file=sys.stderr)
-    return 0 if keep_going else 1
+    return answer_of(record, folder, 0 if keep_going else 1)
 
 
-def print_design(named: NamedDesign, rules: GeometryRules) -> None:
-    """Print the parameters of a design and, if it can be built, what follows from them."""
+def design_document(named: NamedDesign, rules: GeometryRules) -> dict[str, Any]:
+    """Return a design as plain data: parameters, rules broken and, if none is, what follows."""
     design = named.actuator
-    family = "" if design.family == PNEUNET else f", {design.family}"
-    print(f"{named.name} ({named.origin}{family})")
-    parameters = design.parameters()
-    for symbol, value in design.as_dict().items():
-        _print_row(symbol, value, parameters[symbol].unit, parameters[symbol].description)
-    broken = design.violations(rules)
-    if broken:
-        print("cannot be built:", *broken, sep="\n  ")
-        return
-    for row in design.derived():
-        _print_row(*row)
-    volumes = design.volumes(rules)
+    broken, volumes = design.violations(rules), None
+    document: dict[str, Any] = {
+        "name": named.name,
+        "origin": named.origin,
+        **({} if design.family == PNEUNET else {"family": design.family}),
+        "parameters": design.as_dict(),
+        "can_be_built": not broken,
+        "violations": [{**one._asdict(), "message": str(one)} for one in broken],
+    }
+    if not broken:
+        document |= {row.symbol: row.value for row in design.derived()}
+        volumes = design.volumes(rules)
     if volumes is not None:
-        _print_row("solid", volumes.solid, "mm³", "volume of the elastomer")
-        _print_row("cavity", volumes.cavity, "mm³", "volume of the air")
+        document |= {
+            "solid_volume_mm3": volumes.solid,
+            "cavity_volume_mm3": volumes.cavity,
+        }
+    return document
+
+
+def print_design(named: NamedDesign, document: Mapping[str, Any]) -> None:
+    """Print what :func:`design_document` returns of a design."""
+    told = ", ".join(document[key] for key in ("origin", "family") if key in document)
+    print(f"{document['name']} ({told})")
+    parameters = named.actuator.parameters()
+    for symbol, value in document["parameters"].items():
+        _print_row(symbol, value, parameters[symbol].unit, parameters[symbol].description)
+    if not document["can_be_built"]:
+        messages = [one["message"] for one in document["violations"]]
+        print("cannot be built:", *messages, sep="\n  ")
+        return
+    for row in named.actuator.derived():
+        _print_row(*row)
+    for name, key, text in (
+        ("solid", "solid_volume_mm3", "volume of the elastomer"),
+        ("cavity", "cavity_volume_mm3", "volume of the air"),
+    ):
+        if key in document:
+            _print_row(name, document[key], "mm³", text)
 
 
 def print_result(record: Record) -> None:

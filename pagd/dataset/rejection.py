@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pagd.dataset.category import Category
 from pagd.design import Design, GeometryRules, Violation, violations
 from pagd.errors import InputError
+from pagd.long_work import long_work
 
 __all__ = ["Sampled", "draw", "name_of"]
 
@@ -77,11 +78,13 @@ def draw(
         If after 100,000 draws fewer than 1 in 1,000 could be used.
     """
     found, taken = Sampled(), set() if taken is None else taken
-    while (missing := count - len(found.designs)) > 0:
-        # Never more than are missing: then the draws counted end with the last one accepted.
-        for design in propose(missing):
-            _judge(design, category, rules, taken, found)
-        _refuse_a_hopeless(found, category, origin)
+    with long_work(f"{category}, {origin}", count, "designs") as shown:
+        while (missing := count - len(found.designs)) > 0:
+            # Never more than are missing: then the draws counted end with the last one accepted.
+            for design in propose(missing):
+                _judge(design, category, rules, taken, found)
+                shown.reach(len(found.designs))
+            _refuse_a_hopeless(found, category, origin)
     return found
 
 

@@ -15,6 +15,7 @@ from pagd.diversity.measuring import Subject, hulls_of, known, newcomer, rows_of
 from pagd.diversity.spaces import Counts, Space, encoded_space, plane_space
 from pagd.diversity.spread import JITTER
 from pagd.errors import InputError
+from pagd.long_work import counted
 
 __all__ = ["Candidate", "Settings", "compare", "places_of_mode"]
 
@@ -110,7 +111,9 @@ def compare(
     rows: list[dict[str, Any]] = []
     hulls: dict[str, HullComparison] = {}
     for space in spaces:
-        for name, subject in _subjects(space, candidates, training, counts, seed):
+        subjects = _subjects(space, candidates, training, counts, seed)
+        whole = 1 + len(candidates)
+        for name, subject in counted(subjects, f"{space.name} space", whole, "generators"):
             found = hulls_of(space, subject, counts, seed)
             measured = rows_of(space, subject, found, counts, settings.neighbours, seed)
             rows += [{"generator": name, "space": space.name, **row} for row in measured]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.diversity.novelty import leave_one_out_distances, novelty, unit_square
+from pagd.long_work import counted
 
 __all__ = ["PlaneNovelty", "plane_novelty_over_seeds"]
 
@@ -71,7 +72,10 @@ def plane_novelty_over_seeds(
         Beside the generators, ``training``: each training design to the nearest other.
     """
     chosen = tuple(seeds)
-    found = [_novelties(*fit_and_sample(seed)) for seed in chosen]
+    found = [
+        _novelties(*fit_and_sample(seed))
+        for seed in counted(chosen, "planes of a few designs", len(chosen), "seeds")
+    ]
     return PlaneNovelty(chosen, {name: np.array([f[name] for f in found]) for name in found[0]})
 
 

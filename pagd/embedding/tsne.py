@@ -7,6 +7,7 @@ whatever the number of threads, and needs less than half the time (``docs/method
 from __future__ import annotations
 
 import functools
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from pagd.embedding.decoder import NeighbourDecoder
 from pagd.encoding import Decoded, Encoder
 from pagd.errors import InputError
+from pagd.long_work import is_shown, long_work
 
 __all__ = ["TSNE"]
 
@@ -25,6 +27,8 @@ FloatArray = NDArray[np.float64]
 _PERPLEXITY_OF_NEW, _NEAREST_OF_NEW = 5, 25
 # Approximate neighbours would hang on the version of the library that finds them.
 _NEIGHBOURS = "exact"
+# Rounds between two looks at how far it is, which change nothing of the plane.
+_TELL = 10
 
 
 class TSNE:
@@ -66,7 +70,13 @@ class TSNE:
             n_jobs=self.threads,
             random_state=seed,
         )
-        plane = method.fit(vectors)
+        with long_work("t-SNE", method.early_exaggeration_iter + method.n_iter, "rounds") as shown:
+            if is_shown():
+                # The rounds are counted anew behind those of the early exaggeration.
+                done = count(_TELL, _TELL)
+                method.callbacks = [lambda *_: shown.reach(next(done))]
+                method.callbacks_every_iters = _TELL
+            plane = method.fit(vectors)
         return self.restore(designs, np.asarray(plane, dtype=np.float64))
 
     def restore(self, designs: pd.DataFrame, points: FloatArray) -> TSNE:

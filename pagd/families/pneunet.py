@@ -122,10 +122,10 @@ class PneuNet(Actuator):
 
     def derived(self) -> tuple[Derived, ...]:
         """Return total length, numbers of chambers and mode."""
-        chambers = f"{self.design.N1}, {self.design.N2}"
         return (
             *Actuator.derived(self),
-            Derived("N1, N2", chambers, "1", "helical and straight chambers"),
+            Derived("N1", self.design.N1, "1", "number of helical chambers, from the fixed end"),
+            Derived("N2", self.design.N2, "1", "number of straight chambers, at the tip"),
             Derived("mode", self.mode, "", "deformation it is drawn for"),
         )
 

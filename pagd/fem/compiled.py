@@ -2,18 +2,41 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import event
 from numba.core.registry import CPUDispatcher
+
+log = logging.getLogger(__name__)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Everything of fastmath but "no NaN" and "no infinity": the step control
 # relies on an infinite energy to recognise an inverted element.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
+
+
+class _Notice(event.Listener):
+    """Says once why nothing seems to happen: kernels that are on disk raise no such event."""
+
+    said = False
+
+    def on_start(self, event: Any) -> None:
+        """Say it of kernels of our own."""
+        if self.said or not event.data["dispatcher"].py_func.__module__.startswith("pagd."):
+            return
+        self.said = True
+        log.info("compiling the solver, which takes a minute and is kept for later runs")
+
+    def on_end(self, event: Any) -> None:
+        """Nothing to do."""
+
+
+event.register("numba:compile", _Notice())  # type: ignore[no-untyped-call]
 
 
 def compiled(function: Function) -> Function:

@@ -22,7 +22,7 @@ from pagd.figures.surface import sharp_edges
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["draw_geometry", "geometry_figure"]
+__all__ = ["draw_geometry", "geometry_figure", "read_geometry_figure"]
 
 _VIEW = (0.35, -1.0, 0.62)
 # Largest plan and side view, inches.
@@ -30,7 +30,12 @@ _WIDEST, _HIGHEST = 10.0, 3.0
 
 
 def draw_geometry(design_folder: Path, out: Path) -> None:
-    """Draw the geometry of a design from its surfaces, geometry/ or repair/, to a PNG file.
+    """Draw :func:`read_geometry_figure` to a PNG file."""
+    save(read_geometry_figure(design_folder), out)
+
+
+def read_geometry_figure(design_folder: Path) -> Figure:
+    """Return the picture of a design's geometry, from its surfaces in geometry/ or repair/.
 
     Raises
     ------
@@ -41,7 +46,7 @@ def draw_geometry(design_folder: Path, out: Path) -> None:
     if pair is None:
         raise InputError(f"{design_folder}: holds no surfaces of a body and a base to draw.")
     body, base = (_surface(path) for path in pair)
-    save(geometry_figure(design_folder.name, body, base, load_design(design_folder)), out)
+    return geometry_figure(design_folder.name, body, base, load_design(design_folder))
 
 
 def geometry_figure(

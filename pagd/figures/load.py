@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pagd.catalogue import design_from
+from pagd.design import Design
 from pagd.errors import InputError
 from pagd.families import Actuator
 from pagd.mesh.types import Mesh
@@ -117,10 +118,10 @@ def load_records(folder: Path) -> dict[str, Record]:
     return {s: read_record(p) for s, p in paths.items() if (p / RECORD_NAME).is_file()}
 
 
-def load_design(folder: Path) -> Actuator | None:
+def load_design(folder: Path) -> Design | Actuator | None:
     """Return the design, or None where a user's own mesh was solved instead."""
     path = folder / "geometry" / "design.json"
-    return design_from(str(path)).actuator if path.is_file() else None
+    return design_from(str(path)).design if path.is_file() else None
 
 
 def stl_paths(folder: Path) -> tuple[Path, Path] | None:

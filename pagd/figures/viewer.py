@@ -17,7 +17,7 @@ from pagd.figures.surface import OUTSIDE, sharp_edges, skin_of
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-__all__ = ["path_data", "viewer_data"]
+__all__ = ["path_data", "tip_data", "viewer_data"]
 
 # Coordinates are kept in steps of 0.01 mm, which 16 bits hold up to 0.3 m.
 _STEP_MM, _LARGEST = 0.01, 32000
@@ -68,6 +68,17 @@ def path_data(path: Path3D) -> dict[str, Any]:
     return {
         "pressure_kPa": path.pressure_kPa.round(6).tolist(),
         "lines": _rounded(np.moveaxis(path.positions, 2, 1)),
+        "bending_deg": _rounded(path.bending_deg[:, -1]),
+        "twist_deg": _rounded(path.twist_deg[:, -1]),
+    }
+
+
+def tip_data(path: Path3D) -> dict[str, Any]:
+    """Return what plots of many designs show of one: the tip's path and angles, the last line."""
+    return {
+        "pressure_kPa": path.pressure_kPa.round(6).tolist(),
+        "tip": _rounded(path.positions[:, -1].T),
+        "last": _rounded(path.positions[-1].T),
         "bending_deg": _rounded(path.bending_deg[:, -1]),
         "twist_deg": _rounded(path.twist_deg[:, -1]),
     }

@@ -16,6 +16,7 @@ from pagd.design import MODES, Design, GeometryRules, Mode, violations
 from pagd.encoding import Encoder
 from pagd.errors import InputError
 from pagd.generators.interface import Generator, Proposal
+from pagd.long_work import long_work
 
 __all__ = ["Generated", "generate"]
 
@@ -84,10 +85,12 @@ def generate(
     _check(count, mode)
     sieve = _Sieve(generator, training, rules or GeometryRules(), mode, least_novelty)
     rng = np.random.default_rng(seed)
-    while len(sieve.taken) < count:
-        sieve.take(generator.propose(max(count - len(sieve.taken), _SMALLEST_ROUND), rng), count)
-        if sieve.in_vain >= _HOPELESS:
-            raise InputError(_complaint(generator, count, sieve, mode))
+    with long_work(generator.name, count, "designs") as shown:
+        while (left := count - len(sieve.taken)) > 0:
+            sieve.take(generator.propose(max(left, _SMALLEST_ROUND), rng), count)
+            shown.reach(len(sieve.taken))
+            if sieve.in_vain >= _HOPELESS:
+                raise InputError(_complaint(generator, count, sieve, mode))
     return sieve.result()
 
 

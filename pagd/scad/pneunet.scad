@@ -52,9 +52,18 @@ channel_roof = 1.5; // [0.5:0.1:5]
 /* [View] */
 
 // All of it in colours to look at, or one part of it to export
-part = "assembly"; // [assembly, body, base, cavity]
+part = "assembly"; // [assembly, body, base, cavity, mould_outside, mould_core, mould_base]
 // Only the half with y > 0, which shows the inside
 half = false;
+
+/* [Moulds] */
+
+// Walls and floors of the moulds
+mould_wall = 6; // [4:0.5:20]
+// Pegs of the core and their holes in the outer mould: diameter
+peg = 3; // [1:0.5:8]
+// Play between peg and hole, in the diameter
+peg_play = 0.4; // [0:0.05:1]
 
 /* [Hidden] */
 
@@ -178,9 +187,60 @@ module halved() {
     }
 }
 
+
+// ---- Moulds ------------------------------------------------------------------------------
+// The chambers are cast without the base, upside down and open: the outer mould, filled to its
+// rim, and the core, which is pressed into it and leaves the air. The base is cast on its own, with
+// the paper laid in when it is half full, and glued to the chambers' rim at z = 0. All parts come
+// straight out: nothing is undercut along z.
+
+// Outline of the moulds with walls, between two heights.
+module mould_block(low, high) {
+    translate([-mould_wall, -W / 2 - mould_wall, low])
+        cube([L_T + 2 * mould_wall, W + 2 * mould_wall, high - low]);
+}
+
+// In the four corners, from z = 0 up.
+module pegs(diameter, height) {
+    for (x = [-mould_wall / 2, L_T + mould_wall / 2], y = [-1, 1])
+        translate([x, y * (W + mould_wall) / 2, 0])
+            cylinder(d = diameter, h = height, $fn = 48);
+}
+
+// Around the chambers, above the base.
+module mould_outside() {
+    difference() {
+        mould_block(0, H + mould_wall);
+        plate([for (p = base_line) [p.x, gap_floor]], [for (p = base_line) [p.x, 0]]);
+        for (i = [0:N - 1])
+            sheared_box(start(i), start(i) + L, W, 0, H, skew(i), skew(i));
+        pegs(peg + peg_play, mould_wall);
+    }
+}
+
+// The air on a plate, with pegs a little shorter than their holes.
+module mould_core() {
+    union() {
+        mould_block(-mould_wall, 0);
+        cavity();
+        pegs(peg, mould_wall - 1);
+    }
+}
+
+// A tray as deep as the base is thick.
+module mould_base() {
+    difference() {
+        mould_block(-max([for (p = base_line) p.y]) - mould_wall, 0);
+        plate([for (p = base_line) [p.x, 0]], [for (p = base_line) [p.x, -p.y]]);
+    }
+}
+
 if (part == "body") halved() body();
 else if (part == "base") halved() base();
 else if (part == "cavity") halved() cavity();
+else if (part == "mould_outside") mould_outside();
+else if (part == "mould_core") mould_core();
+else if (part == "mould_base") mould_base();
 else {
     color("LightSteelBlue") halved() body();
     color("SteelBlue") halved() base();

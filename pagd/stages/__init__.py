@@ -20,8 +20,9 @@ STAGE_VERSIONS = {
     "screening": 5,
     "fronts": 4,
     "figures": 3,
+    "export": 1,
     "generative_figures": 4,
     "summary": 5,
-    "report": 7,
+    "report": 8,
     "run_crate": 1,
 }

@@ -27,6 +27,7 @@ from pagd.embedding import Embedding, make_embedding
 from pagd.errors import InputError
 from pagd.files import write_text
 from pagd.generators import GENERATORS, Generated, generate, make_generator
+from pagd.long_work import counted
 from pagd.record import Meter, Record, read_record
 from pagd.stages.embedding import check_perplexity, load_embedding
 from pagd.stages.generated import load_generated
@@ -84,7 +85,8 @@ def run(
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         with meter.part("generate"):
             others = [name for name in GENERATORS if name != own]
-            drawn = _draw(others, space, config, len(frame), config["generator"]["seed"])
+            asked = counted(others, "other generators", len(others), "generators", even=False)
+            drawn = _draw(asked, space, config, len(frame), config["generator"]["seed"])
         with meter.part("place"):
             candidates = {own: _candidate(space, frame, _places(frame))}
             candidates |= {

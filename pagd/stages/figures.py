@@ -22,6 +22,7 @@ from pagd.figures.load import (
 from pagd.figures.mesh import draw_mesh
 from pagd.figures.pressure_volume import draw_pressure_volume
 from pagd.figures.style import set_resolution
+from pagd.long_work import counted
 from pagd.record import Meter, Record
 from pagd.stages.mesh import MESH_NAME
 from pagd.stages.stage import Outcome, run_stage
@@ -52,7 +53,9 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
 
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
         set_resolution(resolution)
-        for name, draw in _drawable(design).items():
+        drawable = _drawable(design)
+        asked = counted(drawable.items(), "drawing", len(drawable), "pictures", even=False)
+        for name, draw in asked:
             with meter.part(name):
                 draw(design, folder / f"{name}.png")
         outcome.figures["pictures"] = sorted(path.name for path in folder.glob("*.png"))

@@ -28,6 +28,7 @@ from pagd.errors import InputError, MachineError, StageFailure, Status
 from pagd.files import replaced_folder, write_text
 from pagd.inventory import read_sound_record
 from pagd.limits import Limits, run_apart
+from pagd.long_work import is_shown, long_work
 from pagd.record import Meter, Record
 from pagd.stages import STAGE_VERSIONS
 from pagd.stages.gate import FAULTS, doubt_of, gated
@@ -255,20 +256,24 @@ def _solve(
     done = count - sum(len(batch.designs) for batch in left)
     begun, first, told = time.monotonic(), done, 0.0
     ended: Counter[str] = Counter()
-    for statuses in _statuses(left, (config, materials, fidelity), processes):
-        ended.update(statuses)
-        done += len(statuses)
-        now = time.monotonic()
-        if now - told > _TELL or done == count:
-            told, rate = now, (done - first) / max(now - begun, 1e-9)
-            log.info(
-                "%d of %d designs, %.0f an hour, %.0f min left (%s)",
-                done,
-                count,
-                3600 * rate,
-                (count - done) / rate / 60,
-                ", ".join(f"{status} {number}" for status, number in ended.most_common()),
-            )
+    with long_work("screening", count, "designs") as shown:
+        shown.reach(done)
+        for statuses in _statuses(left, (config, materials, fidelity), processes):
+            ended.update(statuses)
+            done += len(statuses)
+            shown.reach(done)
+            now = time.monotonic()
+            # Whoever sees how far it is need not read it as well, but at the end.
+            if (now - told > _TELL and not is_shown()) or done == count:
+                told, rate = now, (done - first) / max(now - begun, 1e-9)
+                log.info(
+                    "%d of %d designs, %.0f an hour, %.0f min left (%s)",
+                    done,
+                    count,
+                    3600 * rate,
+                    (count - done) / rate / 60,
+                    ", ".join(f"{status} {number}" for status, number in ended.most_common()),
+                )
 
 
 def _statuses(

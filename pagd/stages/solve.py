@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from pagd.design import Design
 from pagd.documents import read_document
 from pagd.errors import InputError
 from pagd.inventory import read_sound_record
+from pagd.long_work import long_work
 from pagd.materials import Elastomer, Sheet, Use, elastomer, find_material, sheet
 from pagd.mesh.interface import STRUCTURED
 from pagd.mesh.msh import read_msh
@@ -151,12 +153,16 @@ def run(
                 profile["cells"] = round(meter.parts["cells_cpu"], 3)
             else:
                 guide = None
-            result = free_actuation(body, *both, stop, progress, guide)
+            with _shown("free actuation", actuation, progress) as told:
+                result = free_actuation(body, *both, stop, told, guide)
         outcome.figures |= _figures(result, profile) | identity(read)
         outcome.end(result.status, result.reason)
         if actuation.blocked_force != "none":
-            with meter.part("blocked_force"):
-                held = blocked_force(body, *both, collision, progress)
+            with (
+                meter.part("blocked_force"),
+                _shown("blocked force", actuation, progress) as told,
+            ):
+                held = blocked_force(body, *both, collision, told)
             outcome.figures["blocked_force"] = _ending(held)
             _write(held, folder / BLOCKED_STATES_NAME, folder / BLOCKED_NAME, BLOCKED)
         # At the end, since the memory that writing takes is not given back.
@@ -176,6 +182,19 @@ def run(
         upstream=upstream,
         libraries=("mkl", "numba", "numpy", "pypardiso", "scipy"),
     )
+
+
+@contextmanager
+def _shown(what: str, actuation: Actuation, progress: Progress | None) -> Iterator[Progress]:
+    """Yield what is told every converged step: ``progress``, and whoever else has asked."""
+    with long_work(what, actuation.maximum_pressure_kPa, "kPa") as shown:
+
+        def told(pressure_kPa: float, iterations: int) -> None:
+            shown.reach(pressure_kPa)
+            if progress is not None:
+                progress(pressure_kPa, iterations)
+
+        yield told
 
 
 def _guide(

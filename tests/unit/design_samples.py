@@ -15,7 +15,9 @@ from pagd.design import GeometryRules
 from pagd.embedding.tsne import TSNE
 
 TABLE2 = Path(__file__).parents[2] / "config" / "table2.csv"
-TABLE2_MIXED = read_designs({"table2": str(TABLE2)})["mixed"].design
+TABLE2_BENDING, TABLE2_MIXED = (
+    read_designs({"table2": str(TABLE2)})[name].design for name in ("bending", "mixed")
+)
 
 
 @functools.cache

@@ -35,7 +35,7 @@ def test_help_names_every_stage_and_imports_nothing_heavy() -> None:
     simulation = ("run", "design", "geometry", "repair", "mesh", "solve", "metrics", "figures")
     generation = ("dataset", "embed", "generate", "diversity", "select")
     for stage in simulation + generation:
-        assert re.search(rf"^    {stage}\s", answer.stdout, re.MULTILINE)
+        assert re.search(rf"^  {stage}\s", answer.stdout, re.MULTILINE)
 
 
 def test_every_subcommand_has_a_handler() -> None:
@@ -94,8 +94,9 @@ def test_view_writes_the_page_beside_the_design_and_opens_it(
     told = capsys.readouterr()
     assert opened == [page.as_uri()]
     assert told.out == f"{page}\n"
-    assert told.err == "pagd: no browser was found; open the page in one.\n"
-    assert "t_ab = 0.2" in page.read_text()
+    assert told.err.endswith("pagd: no browser was found; open the page in one.\n")
+    assert 'data-address="thin_files/thin"' in page.read_text()
+    assert "t_ab = 0.2" in (tmp_path / "thin_files" / "thin" / "card.js").read_text()
     assert main(["view", str(tmp_path / "thin"), "--no-browser"]) == 0
     assert len(opened) == 1
 
@@ -132,7 +133,7 @@ def test_limits_can_be_moved(capsys: pytest.CaptureFixture[str]) -> None:
         ),
         (["repair", "--geometry", "absent", "--out", "out"], "pagd: absent: there is no such fold"),
         (["mesh", "--body", "b.stl", "--out", "out"], "pagd: --body and --base must be given toge"),
-        (["mesh", "--out", "out"], "pagd: mesh needs either --geometry and --repair, or --body"),
+        (["mesh", "--out", "out"], "pagd: mesh needs a design, or --geometry and --repair, or "),
         (["mesh", "--size-mm", "nan", "--out", "out"], "pagd: command line: mesh.size_mm = nan mu"),
         (
             ["solve", "--mesh", "a", "--pressure-kPa", "inf", "--out", "out"],

@@ -55,6 +55,19 @@ def test_every_page_of_the_repository_is_in_it(site: Path) -> None:
 
 
 @pytest.mark.slow
+def test_every_notebook_is_in_it(site: Path) -> None:
+    names = {path.stem for path in (ROOT / "docs/notebooks").glob("*.ipynb")}
+    assert {path.stem for path in (site / "docs/notebooks").glob("*.html")} == names
+    first = (site / "index.html").read_text()
+    for name in names:
+        assert f'href="docs/notebooks/{name}.html"' in first
+    page = (site / "docs/notebooks/own_actuator.html").read_text()
+    assert "simulate" in page
+    assert 'href="../data.html"' in page
+    assert "without its outputs" in page
+
+
+@pytest.mark.slow
 def test_the_reference_has_what_is_public(site: Path) -> None:
     text = (site / "docs/api/pagd.design.html").read_text()
     assert 'id="pagd.design.model.Design"' in text

@@ -61,6 +61,18 @@ def test_a_foreign_folder_is_refused(tmp_path: Path) -> None:
     assert (tmp_path / "thesis.tex").exists()
 
 
+def test_what_lies_under_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for path in (tmp_path / "file/folder/here", tmp_path / "file/here"):
+        with pytest.raises(InputError, match=r"here: cannot be made \(.*file"):
+            write_text(path, "text")
+        with (
+            pytest.raises(InputError, match=r"here: cannot be made \(.*file"),
+            replaced_folder(path, "marker"),
+        ):
+            pass
+
+
 def test_files_follow_the_umask(tmp_path: Path) -> None:
     plain = tmp_path / "plain"
     plain.touch()

@@ -1,12 +1,10 @@
-"""The page: its parts by their content, the whole in a browser."""
+"""The page and its cards: their parts by their content."""
 
 import base64
 import dataclasses
 import html
 import json
 import re
-import shutil
-import subprocess
 import zlib
 from dataclasses import replace
 
@@ -26,6 +24,8 @@ from pagd.figures.generative.captions import CAPTIONS
 from pagd.figures.groups import read_entries
 from pagd.figures.load import Path3D
 from pagd.figures.page import Study, write_page
+from pagd.figures.page.cards import write_card
+from pagd.figures.page.claims import claims, claims_of
 from pagd.figures.page.explorer import explorer_data
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, comparison_table
 from pagd.figures.page.libraries import datatables, plotly
@@ -130,7 +130,17 @@ def titles_of(text):
     return re.findall(r"<h2>\d+\. (.*?)</h2>", text)
 
 
-def test_page_needs_no_other_file(page):
+def card_of(page, name):
+    """What the card of a design holds, which lies beside the page."""
+    return card_of_folder(page.with_name("index_files") / name)
+
+
+def card_of_folder(folder):
+    text = (folder / "card.js").read_text(encoding="utf-8")
+    return json.loads(text.removeprefix("takeCard(").removesuffix(");\n"))
+
+
+def test_page_needs_no_other_file_but_its_cards(page):
     text = page.read_text(encoding="utf-8")
     scripts = re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL)
     assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", scripts)
@@ -148,18 +158,46 @@ def test_page_tells_of_every_design(page):
     assert data["rows"][0][place["bending_deg"]] == pytest.approx(34.4, abs=0.05)
     assert data["rows"][1][place["tip_z_mm"]] == -5.25
     assert data["rows"][2][place["status"]] == "invalid geometry"
-    assert "t_ab = 9 is &lt;too thick&gt; &amp; leaves no cavity." in text
-    assert [d["name"] for d in data_of(text)["designs"]] == ["whole", "half", "failed"]
-    assert text.count('class="shape-data"') == 2
+    names = [d["name"] for d in data_of(text)["designs"]]
+    assert names == ["whole", "half", "failed"]
     assert text.count('" open><summary>') == 3
+    assert re.findall('data-address="(.*?)"', text) == [f"index_files/{name}" for name in names]
     # What there is nothing of has no section.
-    expected = ["What was run", "Explorer", "Performance", "Trajectories, angles and forces"]
+    expected = [
+        "What was run",
+        "Beside the paper",
+        "Explorer",
+        "Performance",
+        "Trajectories, angles and forces",
+    ]
     expected += ["Each design"]
     assert titles_of(text) == expected
-    assert text.count("Blocked force (lower edge of the tip held): 0.690 N at 30 kPa.") == 2
     assert "Contact was off" not in text
-    steps = [set(d["steps"]) for d in data_of(text)["designs"]]
-    assert steps == [{"free", "held"}, {"free", "held"}, set()]
+    assert [bool(d["held"]) for d in data_of(text)["designs"]] == [True, True, False]
+
+
+def test_a_card_holds_what_there_is_of_its_design(page):
+    whole, half, failed = (card_of(page, name) for name in ("whole", "half", "failed"))
+    for one in (whole, half):
+        assert set(one["steps"]) == {"free", "held"}
+        assert one["shape"]["vertices"] > 0
+        assert "Blocked force (lower edge of the tip held): 0.690 N at 30 kPa." in one["markup"]
+        assert "<dt>bending</dt>" in one["markup"]
+        # All records, as they stand.
+        assert "<summary>solve " in one["markup"]
+        assert "&quot;schema&quot;: 1" in one["markup"]
+    assert "t_ab = 9 is &lt;too thick&gt; &amp; leaves no cavity." in failed["markup"]
+    assert (failed["shape"], failed["path"], failed["steps"]) == (None, None, {})
+
+
+def test_a_card_offers_what_lies_beside_it(designs, tmp_path):
+    (tmp_path / "body.stl").write_bytes(b"x" * 250_000)
+    (tmp_path / "own.txt").write_text("not ours")
+    write_card(designs[0], tmp_path)
+    markup = card_of_folder(tmp_path)["markup"]
+    assert '<a href="body.stl" download>body.stl</a> <small>0.2 MB</small> surface' in markup
+    assert "own.txt" not in markup
+    assert "solids.step" not in markup
 
 
 @pytest.mark.parametrize(("contact", "word"), [(True, "on"), (False, "off")])
@@ -180,7 +218,7 @@ def test_page_of_failed_designs_only(designs, tmp_path):
     text = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "invalid geometry" in text
     assert "not run" in text
-    assert "No stage has left a record." in text
+    assert "No stage has left a record." in card_of(tmp_path / "index.html", "never-run")["markup"]
 
 
 # ---- table ----------------------------------------------------------------------------------
@@ -315,6 +353,36 @@ def test_comparison_of_nothing_is_nothing():
     assert comparison_table({}) == ""
 
 
+# ---- the paper beside a run -----------------------------------------------------------------
+
+
+def test_claims_are_beside_what_was_measured(study):
+    rows = [
+        {"design_id": "straight", "origin": "table2", "status": "ok", "pressure_kPa": 50.0}
+        | {"bending_deg": 91.2, "twist_deg": 0.04},
+        {"design_id": "failed", "origin": "table2", "status": "mesh_failed"},
+    ]
+    hull = measured("gmm", "hull_ratio", 1.18, low=0.87, high=1.61)
+    said = [one.measured for one in claims_of(study, rows)]
+    assert said == [
+        "1,900 designs: 901 bending, 999 twisting",
+        "t-SNE with perplexity 30, trustworthiness 0.900",
+        "of 1,000 generated designs bending 25 %, twisting 25 %, mixed 50 %",
+        "2 designs: 1 ok, 1 mesh failed",
+        "straight at 50 kPa: bends by 91°, twists not",
+    ]
+    diversity = study.diversity.with_name("hull.json")
+    diversity.write_text(json.dumps(COMPARISON | {"rows": [hull]}))
+    (told,) = (
+        one for one in claims_of(replace(study, diversity=diversity), []) if "50" in one.said
+    )
+    assert (
+        told.measured
+        == "1.18 times the area (0.87 to 1.61 for other fifties); no larger hull is certain"
+    )
+    assert claims(Study(), []) == ""
+
+
 # ---- page of a study ------------------------------------------------------------------------
 
 
@@ -430,6 +498,7 @@ def test_page_of_a_study_follows_the_method(whole_page):
     text = whole_page.read_text(encoding="utf-8")
     assert titles_of(text) == [
         "What was run",
+        "Beside the paper",
         "Explorer",
         "Data set and embedding",
         "Generator and modes",
@@ -464,7 +533,7 @@ def test_every_picture_of_a_study_is_there_once_with_its_caption(whole_page):
     assert sorted(shown) == sorted(CAPTIONS)
     assert text.count("data:image/webp") == len(CAPTIONS)
     assert shown[0] == "embedding"
-    assert text.index("How hull") < text.index("<h2>7. Performance") < text.index("How feasibility")
+    assert text.index("How hull") < text.index("<h2>8. Performance") < text.index("How feasibility")
 
 
 def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
@@ -477,7 +546,7 @@ def test_whoever_does_not_see_the_pictures_is_told_what_they_show(whole_page):
 
 def test_many_cards_are_closed_and_designs_without_a_folder_have_none(whole_page):
     text = whole_page.read_text(encoding="utf-8")
-    assert re.findall(r'<details class="card" id="design-(\w+)">', text) == [
+    assert re.findall(r'<details class="card" id="design-(\w+)" data-address="[^"]*">', text) == [
         f"d{i}" for i in range(5)
     ]
     data = data_of(text)
@@ -491,76 +560,3 @@ def test_a_study_that_cannot_be_read_is_said(tmp_path):
     with pytest.raises(InputError, match=r"diversity.json: not readable as JSON"):
         write_page([], tmp_path / "index.html", study=Study(diversity=tmp_path / "diversity.json"))
     assert not (tmp_path / "index.html").exists()
-
-
-# ---- browser --------------------------------------------------------------------------------
-
-needs_browser = pytest.mark.skipif(not shutil.which("chromium"), reason="needs: chromium")
-
-
-def opened(page, folder, probe="", anchor=""):
-    """The document of a page after its scripts, and what ``probe`` finds when they have run."""
-    copy = folder / "page.html"
-    script = f"<script>addEventListener('load', async () => {{ {probe} }});</script>"
-    copy.write_text(page.read_text(encoding="utf-8") + (script if probe else ""), "utf-8")
-    flags = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync"
-    flags += " --disable-background-networking --disable-component-update --enable-logging=stderr"
-    flags += " --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --dump-dom"
-    flags += " --window-size=1200,4000 --virtual-time-budget=20000"
-    command = [
-        "chromium",
-        *flags.split(),
-        f"--user-data-dir={folder / 'profile'}",
-        copy.as_uri() + anchor,
-    ]
-    answer = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    assert "Uncaught" not in answer.stderr
-    assert not re.search("CONSOLE.*WARN", answer.stderr)
-    return re.sub(r"<script.*?</script>", "", answer.stdout, flags=re.DOTALL)
-
-
-@needs_browser
-def test_page_draws_without_errors_in_a_browser(page, tmp_path):
-    document = opened(page, tmp_path)
-    # Five plots of all designs, and their forces against bending; shape, angles, force, gap and
-    # volume of two designs.
-    assert document.count('class="plot-container') == 5 + 1 + 2 * 5
-    assert document.count("<canvas") >= 2
-    assert "30 kPa</output>" in document
-    # The key of the designs is text of the page; no legend lies over a title of theirs.
-    key = re.search(r'<ul id="key">(.*?)</ul>', document, re.DOTALL).group(1)
-    assert re.findall(r"<li[^>]*>(.*?)</li>", key) == ["whole", "half"]
-    # Angles, gap and volume have one, of two designs, and so has the plot of all by mode; of force
-    # there is one curve.
-    assert document.count('class="legend"') == 2 * 3 + 1
-
-
-_PROBE = """
-const keys = () => [...document.querySelectorAll("#key li")].map((e) => e.textContent).join(" ");
-const found = { modes: keys() };
-document.querySelectorAll("#groups button")[1].click(); found.twisting = keys();
-const box = document.querySelector("#diversity .scroll");
-found.more = [90, 0, 5000].map((scrolled) => {
-  box.style.width = "100px"; box.scrollLeft = scrolled; fade(box);
-  return box.classList.contains("more");
-});
-const list = document.createElement("pre");
-list.id = "found"; list.textContent = JSON.stringify(found); document.body.append(list);
-"""
-
-
-@needs_browser
-def test_paths_are_shown_by_mode_and_wide_tables_fade(whole_page, tmp_path):
-    document = opened(whole_page, tmp_path, _PROBE)
-    found = json.loads(html.unescape(re.search(r'id="found">(.*?)</pre>', document).group(1)))
-    assert (found["modes"], found["twisting"]) == ("twisting mixed", "d1 d2 d3 d4")
-    # There is more to the right, until the table is scrolled to its end.
-    assert found["more"] == [True, True, False]
-
-
-@needs_browser
-@pytest.mark.parametrize("anchor", ["", "#design-d0"])
-def test_a_shape_is_drawn_only_when_its_card_is_open(whole_page, tmp_path, anchor):
-    document = opened(whole_page, tmp_path, anchor=anchor)
-    card = re.search(r'<details[^>]*id="design-d0"[^>]*>.*?</details>', document, re.DOTALL).group()
-    assert ("<canvas" in card, "Loading the deformed shape" in card) == (bool(anchor), not anchor)

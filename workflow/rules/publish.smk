@@ -46,6 +46,34 @@ rule figures:
         " --keep-going --out {output.figures:q} > {log:q} 2>&1"
 
 
+rule export:
+    input:
+        geometry=rules.prepare.output.geometry,
+        repair=rules.prepare.output.repair,
+        mesh=rules.prepare.output.mesh,
+        solve=rules.solve.output.solve,
+        metrics=rules.metrics.output.metrics,
+        figures=rules.figures.output.figures,
+    output:
+        export=directory("results/report/designs/{design}"),
+    log:
+        "results/logs/export/{design}.log",
+    benchmark:
+        "results/benchmarks/export/{design}.tsv"
+    resources:
+        mem_mb=2000,
+        runtime=20,
+    params:
+        version=STAGE_VERSIONS["export"],
+        config=config_of("export"),
+        design=design_folder,
+    message:
+        "Export design {wildcards.design}: surfaces, solids, moulds, tables, card of the page."
+    shell:
+        "pagd export {params.design:q} --config {params.config:q}"
+        " --keep-going --out {output.export:q} > {log:q} 2>&1"
+
+
 rule pictures_together:
     input:
         mesh=of_drawn_designs(rules.prepare.output.mesh),
@@ -169,7 +197,7 @@ rule report_page:
         mesh=of_drawn_designs(rules.prepare.output.mesh),
         solve=of_drawn_designs(rules.solve.output.solve),
         metrics=of_drawn_designs(rules.metrics.output.metrics),
-        figures=of_drawn_designs(rules.figures.output.figures),
+        cards=of_drawn_designs(rules.export.output.export),
         pictures=rules.pictures_together.output.pictures,
         study=list(STUDY.values()),
     output:

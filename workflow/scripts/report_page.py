@@ -8,7 +8,7 @@ from pagd.figures.page import Study, write_page
 
 def main(designs: list[Path], pictures: Path, page: Path, study: Study) -> None:
     """Write the page of the designs whose folders are given, and of the study they belong to."""
-    write_page(designs, page, pictures, study)
+    write_page(designs, page, pictures, study, cards=page.parent / "designs")
 
 
 if "snakemake" in globals():

@@ -29,6 +29,7 @@ class Explorer {
     this.place = Object.fromEntries(columns.map(({ key }, i) => [key, i]));
     this.element = document.getElementById("plot-explorer");
     this.count = document.getElementById("explorer-count");
+    this.whenChosen = () => {};
   }
 
   start() {
@@ -135,7 +136,8 @@ class Explorer {
       scrollX: true,
       pageLength: 10,
       lengthMenu: [10, 25, 100, 1000],
-      select: { style: "os", info: false },
+      // A click on a name opens its card, and marks nothing.
+      select: { style: "multi+shift", selector: "td:not(:first-child)", info: false },
       fixedColumns: { start: innerWidth > 760 ? 1 : 0 },
       layout: { topStart: null, topEnd: "search", bottomStart: ["info", "pageLength"] },
       language: {
@@ -197,6 +199,7 @@ class Explorer {
     this.chosen = new Set(this.table.rows({ selected: true }).indexes().toArray());
     this.tell(this.shown.length);
     this.draw();
+    this.whenChosen();
   }
 
   choose(rows) {
@@ -205,6 +208,7 @@ class Explorer {
     this.table.rows(rows).select();
     this.table.rows().invalidate().draw();
     this.draw();
+    this.whenChosen();
   }
 
   tell(shown) {

@@ -13,6 +13,9 @@ function curve(design, x, y, more) {
   };
 }
 
+// More lines than this in one plot are drawn as one a mode.
+const MOST_LINES = 40;
+
 // The designs of one mode in their own colours, or all in the colours of their modes.
 class Paths {
   constructor(designs) {
@@ -29,8 +32,34 @@ class Paths {
 
   get shown() {
     const chosen = this.designs.filter((design) => !this.group || design.mode === this.group);
-    if (!this.grouped || this.group) return chosen;
+    if (!this.byMode) return chosen;
     return chosen.map((d) => ({ ...d, dash: "solid", colour: modeColour(d.mode) }));
+  }
+
+  get byMode() {
+    const size = this.designs.filter(({ mode }) => mode === this.group).length;
+    return this.grouped && (!this.group || size > MOST_LINES);
+  }
+
+  // Many lines of one colour are one line with gaps, or a browser would take minutes.
+  joined(lines) {
+    if (lines.length <= MOST_LINES) return lines;
+    const found = new Map();
+    for (const line of lines) {
+      const key = `${line.line.color} ${line.opacity} ${line.mode}`;
+      if (!found.has(key)) found.set(key, { ...line, x: [], y: [], text: [] });
+      const all = found.get(key);
+      const text = line.x.map((_, i) => [line.name, line.text?.[i]].filter(Boolean).join(", "));
+      all.x.push(...line.x, null);
+      all.y.push(...line.y, null);
+      all.text.push(...text, null);
+    }
+    const template = "%{text}<br>%{x:.4~r}, %{y:.4~r}<extra></extra>";
+    return [...found.values()].map((all) => ({
+      ...all,
+      connectgaps: false,
+      ...(all.hoverinfo === "skip" ? {} : { hovertemplate: template }),
+    }));
   }
 
   drawGroups() {
@@ -57,9 +86,9 @@ class Paths {
 
   // One key for all plots, as text of the page: it wraps, and covers no title.
   drawKey() {
-    const modes = this.grouped && !this.group;
-    const names = modes
-      ? content.groups.map((mode) => ({ name: mode, colour: modeColour(mode) }))
+    const groups = this.group ? [this.group] : content.groups;
+    const names = this.byMode
+      ? groups.map((mode) => ({ name: mode, colour: modeColour(mode) }))
       : this.shown;
     const entries = names.map(({ name, colour, dash }) => {
       const entry = document.createElement("li");
@@ -81,7 +110,7 @@ class Paths {
     ].map(([id, title, across, label]) =>
       register(
         document.getElementById("plot-" + id),
-        () => this.shown.flatMap((design) => this.path(design, across)),
+        () => this.joined(this.shown.flatMap((design) => this.path(design, across))),
         () => flatLayout(title, axis(label, fixed), axis("z, mm", { ...equal, ...fixed }), plain),
       ),
     );
@@ -94,7 +123,7 @@ class Paths {
       this.redraw.push(
         register(
           document.getElementById("plot-" + id),
-          () => this.shown.map(line),
+          () => this.joined(this.shown.map(line)),
           () => flatLayout(title, axis("pressure, kPa"), axis("degrees"), plain),
         ),
       );
@@ -107,12 +136,11 @@ class Paths {
     const element = document.getElementById("plot-force");
     if (!element) return;
     const force = { connectgaps: true, hovertemplate: "%{x:.4~r} kPa: %{y:.3~r} N" };
-    const line = ({ steps: { held }, ...d }) =>
-      this.thin(curve(d, held.pressure_kPa, held.force_N, force));
+    const line = ({ held, ...d }) => this.thin(curve(d, held.pressure_kPa, held.force_N, force));
     this.redraw.push(
       register(
         element,
-        () => this.shown.filter((design) => design.steps.held).map(line),
+        () => this.joined(this.shown.filter(({ held }) => held).map(line)),
         () => flatLayout("Blocked force", axis("pressure, kPa"), axis("force, N"), plain),
       ),
     );
@@ -125,9 +153,7 @@ class Paths {
   }
 
   path(design, across) {
-    const lines = design.path.lines;
-    const last = lines[lines.length - 1];
-    const tip = (i) => lines.map((line) => line[i][line[i].length - 1]);
+    const { tip, last } = design.path;
     const shape = {
       ...curve(design, last[across], last[2], { mode: "lines", hoverinfo: "skip" }),
       line: { color: design.colour, width: this.grouped ? 3 : 6 },
@@ -135,11 +161,18 @@ class Paths {
     };
     const text = design.path.pressure_kPa.map(kilopascals);
     const place = { text, hovertemplate: "%{text}<br>%{x} mm, %{y} mm" };
-    return [shape, this.thin(curve(design, tip(across), tip(2), place))];
+    return [shape, this.thin(curve(design, tip[across], tip[2], place))];
   }
 }
 
+// They are drawn when they come into sight: whoever opens a page of many need not wait for them.
 function drawPaths() {
   const designs = content.designs.filter((design) => design.path);
-  if (designs.length) new Paths(designs);
+  if (!designs.length) return;
+  const watch = new IntersectionObserver(([{ isIntersecting }]) => {
+    if (!isIntersecting) return;
+    watch.disconnect();
+    new Paths(designs);
+  }, { rootMargin: "600px" });
+  watch.observe(document.getElementById("plot-side"));
 }

@@ -86,15 +86,18 @@ class Shape {
   }
 }
 
+// The shape of a design with its slider, in a box of the page; beside it the angles and the course of
+// the centre line, where the box has places for them.
 class Viewer {
-  constructor(card, design) {
+  constructor(box, design, { shape, path }) {
     this.design = design;
-    this.data = JSON.parse(card.querySelector(".shape-data").textContent);
-    this.element = card.querySelector(".shape");
-    this.angles = card.querySelector(".angles");
-    this.slider = card.querySelector("input");
-    this.button = card.querySelector("button");
-    this.output = card.querySelector("output");
+    this.data = shape;
+    this.path = path;
+    this.top = shape.top;
+    this.element = box.querySelector(".shape");
+    this.slider = box.querySelector("input");
+    this.button = box.querySelector("button");
+    this.output = box.querySelector("output");
     this.shape = null;
     this.wanted = false;
     this.shown = false;
@@ -105,16 +108,24 @@ class Viewer {
     this.slider.addEventListener("input", () => this.stop() || this.update());
     this.button.addEventListener("click", () => (this.timer ? this.stop() : this.play()));
     this.label();
-    if (design.path) this.drawAngles();
-    drawSteps(card.querySelector(".curves"), design.steps);
+    this.angles = path && box.querySelector(".angles");
+    this.course = path && box.querySelector(".course");
+    if (this.angles) this.drawAngles();
+    if (this.course) this.drawCourse();
     redraws.push(() => this.shown && Plotly.react(this.element, this.traces(), this.layout(), options));
+    this.watch();
+  }
+
+  // Browsers keep only some WebGL pictures alive: those out of sight are given up.
+  watch() {
+    const seen = ([{ isIntersecting }]) => (isIntersecting ? this.show() : this.hide());
+    new IntersectionObserver(seen, { rootMargin: "300px" }).observe(this.element);
   }
 
   get state() {
     return Number(this.slider.value);
   }
 
-  // Browsers keep only some WebGL pictures alive: those out of sight are given up.
   async show() {
     this.wanted = true;
     this.shape = this.shape || (await Shape.of(this.data));
@@ -149,7 +160,7 @@ class Viewer {
         k: shape.corner(2),
         intensity: shape.strain(this.state),
         cmin: 0,
-        cmax: shape.top,
+        cmax: this.top,
         colorscale: content.strain.colours.map((value, i) => [i / steps, value]),
         colorbar: this.bar(),
         lighting: { ambient: 0.55, diffuse: 0.6, specular: 0.08, roughness: 0.8, fresnel: 0.1 },
@@ -227,7 +238,8 @@ class Viewer {
 
   update() {
     this.label();
-    if (this.design.path) Plotly.relayout(this.angles, { shapes: [this.mark()] });
+    if (this.angles) Plotly.relayout(this.angles, { shapes: [this.mark()] });
+    if (this.course) Plotly.restyle(this.course, this.now(), [1]);
     if (!this.shown) return;
     const xyz = this.shape.coordinates(this.state);
     const lines = this.shape.lines(xyz);
@@ -270,7 +282,7 @@ class Viewer {
   }
 
   drawAngles() {
-    const path = this.design.path;
+    const path = this.path;
     const line = (name, values, dash) => ({
       ...curve(this.design, path.pressure_kPa, values, {
         name, hovertemplate: name + " %{y:.1f}° at %{x:.4~r} kPa<extra></extra>",
@@ -284,24 +296,39 @@ class Viewer {
         flatLayout("Angles", axis("pressure, kPa"), axis("degrees"), { shapes: [this.mark()] }),
     );
   }
+
+  // The centre line at the pressure of the slider.
+  now() {
+    const [x, , z] = this.path.lines[Math.min(this.state, this.path.lines.length - 1)];
+    return { x: [x], y: [z] };
+  }
+
+  // The centre lines at all pressures from the side, and the way of the tip.
+  drawCourse() {
+    const lines = this.path.lines;
+    const all = (axis) => lines.flatMap((line) => [...line[axis], null]);
+    const tip = (axis) => lines.map((line) => line[axis][line[axis].length - 1]);
+    const text = this.path.pressure_kPa.map(kilopascals);
+    const quiet = { type: "scatter", mode: "lines", hoverinfo: "skip", showlegend: false };
+    register(
+      this.course,
+      () => [
+        { ...quiet, x: all(0), y: all(2), line: { color: colour("faint"), width: 1 } },
+        { ...quiet, ...flat(this.now()), line: { color: this.design.colour, width: 4 } },
+        {
+          ...curve(this.design, tip(0), tip(2), { showlegend: false, text }),
+          hovertemplate: "tip at %{text}<br>x %{x:.1f}, z %{y:.1f} mm<extra></extra>",
+        },
+      ],
+      () => {
+        const fixed = { automargin: false };
+        const equal = { ...fixed, scaleanchor: "x", scaleratio: 1 };
+        return flatLayout("Trajectory, side", axis("x, mm", fixed), axis("z, mm", equal));
+      },
+    );
+  }
 }
 
-// A viewer is made when its card is first seen: it reads the data of its shape only then.
-function drawShapes() {
-  const designs = new Map(content.designs.map((design) => [design.name, design]));
-  const viewers = new Map();
-  const watch = new IntersectionObserver(
-    (entries) => {
-      for (const { target, isIntersecting } of entries) {
-        if (isIntersecting && !viewers.has(target)) {
-          const card = target.closest(".card");
-          viewers.set(target, new Viewer(card, designs.get(card.id.slice("design-".length))));
-        }
-        if (isIntersecting) viewers.get(target).show();
-        else viewers.get(target)?.hide();
-      }
-    },
-    { rootMargin: "300px" },
-  );
-  for (const element of document.querySelectorAll(".shape")) watch.observe(element);
+function flat({ x: [x], y: [y] }) {
+  return { x, y };
 }

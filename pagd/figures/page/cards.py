@@ -1,58 +1,90 @@
-"""The card of one design: shape to turn, angles, pictures; it is closed where there are many."""
+"""The card of one design: a line of the page, and a file of its own that is read when it is opened.
+
+With the shapes of all designs inside it, a page of a thousand would be a gigabyte.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
 from pagd.figures.captions import captions_of_design
-from pagd.figures.groups import Entry
-from pagd.figures.load import has_history, has_states, load_states
+from pagd.figures.curves import curves_of
+from pagd.figures.groups import Entry, read_entries
+from pagd.figures.load import has_states, has_trajectory, load_states, load_trajectory
+from pagd.figures.page.downloads import downloads
 from pagd.figures.page.markup import badge, escaped, folded
 from pagd.figures.page.mechanics import mechanics_of
-from pagd.figures.page.pictures import CARD_PIXELS, PIXELS, pictures
+from pagd.figures.page.pictures import CARD_PIXELS, pictures
+from pagd.figures.page.records import key_figures, mesh_quality, stage_records
 from pagd.figures.style import number
-from pagd.figures.viewer import viewer_data
+from pagd.figures.viewer import path_data, viewer_data
+from pagd.files import write_text
 
-__all__ = ["card", "json_text"]
+__all__ = ["CARD_NAME", "card", "card_content", "json_text", "write_card"]
 
-_VIEWER = """
-<div class="bench">
-  <div>
-    <div class="shape"><p class="hint">Loading the deformed shape …</p></div>
-    <div class="control">
-      <button type="button" aria-label="play">▶</button>
-      <input type="range" min="0" max="0" value="0" step="1" aria-label="pressure">
-      <output></output>
-    </div>
-  </div>
-  <div class="angles"></div>
-</div>
-"""
-
-# Filled by the script with what there is: blocked force, gap, volume.
-_CURVES = '<div class="curves"></div>'
+CARD_NAME: Final = "card.js"
 
 
-def card(entry: Entry, *, is_open: bool) -> str:
-    """Return the card of a design as markup; the data of its shape are read when it is seen."""
-    pixels = PIXELS if is_open else CARD_PIXELS
-    captions = captions_of_design()
-    shown = pictures(entry.folder / "figures", captions, captions, pixels, entry.name)
-    body = [
-        _reason(entry),
-        _mechanics(entry),
-        _viewer(entry),
-        folded("Pictures", shown) if is_open else shown,
-    ]
+def card(entry: Entry, address: str, *, is_open: bool) -> str:
+    """Return the line of a design as markup; the script fills in the card when it is opened.
+
+    ``address``: where its file lies, seen from the page.
+    """
     state = " open" if is_open else ""
     return (
-        f'<details class="card" id="design-{escaped(entry.name)}"{state}>'
+        f'<details class="card" id="design-{escaped(entry.name)}"'
+        f' data-address="{escaped(address)}"{state}>'
         f"<summary><h3>{escaped(entry.name)}</h3> {badge(entry.status, ok=entry.is_ok)}"
-        f' <span class="about">{escaped(_about(entry))}</span></summary>'
-        f"{''.join(body)}</details>"
+        f' <span class="about">{escaped(_about(entry))}</span></summary></details>'
     )
+
+
+def write_card(design: Path, folder: Path) -> None:
+    """Write card.js of a design to a folder, in which files to offer may lie already.
+
+    A script and no JSON: a page that is opened from a disk may load the one, and not the other.
+
+    Parameters
+    ----------
+    design
+        Folder with the folders of the design's stages.
+    folder
+        Where to write it; what else lies there is offered for download.
+    """
+    entry = read_entries([design])[0]
+    content = card_content(entry, downloads(folder))
+    write_text(folder / CARD_NAME, f"takeCard({json_text({'name': entry.name, **content})});\n")
+
+
+def card_content(entry: Entry, offered: str = "") -> dict[str, Any]:
+    """Return what the card of a design shows.
+
+    Keys: ``markup``, with what is ``offered`` for download; ``shape`` of
+    :func:`pagd.figures.viewer.viewer_data`, ``path`` of :func:`pagd.figures.viewer.path_data` and
+    ``steps`` of :func:`pagd.figures.curves.curves_of`, None or empty where there are none.
+    """
+    captions = captions_of_design()
+    # First what was drawn, in sections with its dimensions.
+    names = sorted(captions, key=lambda name: name != "geometry")
+    body = [
+        _reason(entry),
+        '<div class="place"></div>',
+        key_figures(entry),
+        _mechanics(entry),
+        folded("Mesh", mesh_quality(entry)),
+        folded("Downloads", offered),
+        folded("Record", stage_records(entry)),
+        pictures(entry.folder / "figures", names, captions, CARD_PIXELS, entry.name),
+    ]
+    return {
+        "markup": "".join(body),
+        "shape": viewer_data(load_states(entry.folder)) if has_states(entry.folder) else None,
+        "path": path_data(load_trajectory(entry.folder)) if has_trajectory(entry.folder) else None,
+        "steps": curves_of(entry.folder),
+    }
 
 
 def json_text(content: Mapping[str, Any]) -> str:
@@ -78,11 +110,3 @@ def _reason(entry: Entry) -> str:
 def _mechanics(entry: Entry) -> str:
     told = mechanics_of(entry)
     return f'<p class="note">{escaped(told)}</p>' if told else ""
-
-
-def _viewer(entry: Entry) -> str:
-    if not has_states(entry.folder):
-        return ""
-    data = json_text(viewer_data(load_states(entry.folder)))
-    curves = _CURVES if has_history(entry.folder) else ""
-    return f'{_VIEWER}{curves}<script type="application/json" class="shape-data">{data}</script>'

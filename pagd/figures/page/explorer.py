@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from pagd.dataset import read_frame
 from pagd.figures.page.rows import Row
+from pagd.figures.page.shown import FIGURES, Shown
 from pagd.figures.page.study import Study
 from pagd.tables import read_rows
 
@@ -20,63 +21,37 @@ __all__ = ["FULL", "ONE_CHAMBER", "explorer", "explorer_data"]
 FULL, ONE_CHAMBER = "full", "one chamber"
 
 
-class _Column(NamedTuple):
-    """A column: heading, unit, key of the rows, digits behind the point; none where it is text."""
-
-    heading: str
-    unit: str
-    key: str
-    digits: int | None = None
-    factor: float = 1.0
-
-
-_COLUMNS: Final = (
-    _Column("design", "", "design_id"),
-    _Column("status", "", "status"),
-    _Column("analysis", "", "analysis"),
-    _Column("origin", "", "origin"),
-    _Column("drawn for", "", "mode"),
-    _Column("measured mode", "", "measured_mode"),
-    _Column("novelty", "", "novelty", 2),
-    _Column("pressure", "kPa", "pressure_kPa", 0),
-    _Column("bending", "°", "bending_deg", 1),
-    _Column("twist", "°", "twist_deg", 1),
-    _Column("blocked force", "N", "blocked_force_N", 3),
-    _Column("of the tip held to", "kPa", "blocked_force_pressure_kPa", 1),
-    _Column("tip x", "mm", "tip_x_mm", 1),
-    _Column("tip y", "mm", "tip_y_mm", 1),
-    _Column("tip z", "mm", "tip_z_mm", 1),
-    _Column("first contact", "kPa", "first_contact_pressure_kPa", 1),
-    _Column("penetration", "mm", "deepest_penetration_mm", 3),
-    _Column("work", "mJ", "work_mJ", 1),
-    _Column("work density", "kJ/m³", "work_density_kJ_m3", 2),
-    _Column("strain", "99 %", "strain_p99", 3),
-    _Column("energy balance", "%", "energy_balance", 2, 100.0),
-    _Column("mesh size", "mm", "size_mm", 1),
-    _Column("tetrahedra", "", "tets", 0),
-    _Column("iterations", "", "newton_iterations", 0),
-    _Column("time", "s", "wall_s", 1),
-    _Column("material", "", "material"),
-    _Column("why", "", "reason"),
-)
-
 _MARKUP: Final = """
 <div class="explorer">
   <div class="control">
     <label>across <select id="explorer-x"></select></label>
     <label>up <select id="explorer-y"></select></label>
     <button type="button" id="explorer-clear">Select none</button>
+    <button type="button" id="explorer-compare" disabled>Compare</button>
     <output id="explorer-count"></output>
   </div>
   <div class="plot tall" id="plot-explorer"></div>
   <table id="explorer-table" class="display compact nowrap"></table>
 </div>
 <p class="note">Draw a box or a lasso around points: their rows come first. A click on a row marks
-its point, the funnel of a column filters by it, and the plot shows what the filters leave. Bending
+or unmarks its point; two to four are compared side by side. The funnel of a column filters by it,
+and the plot shows what the filters leave. A click on a name or a point opens the card of a design
+that was simulated in full. Bending
 is positive towards the paper (down), twist by the right hand about the axis from the fixed end to
 the tip; both are summed over the chambers, so that they pass 180°. Figures are those of the last
 pressure reached. Energy balance: |∫p&nbsp;dV&nbsp;−&nbsp;U|&nbsp;/&nbsp;U. Strain: 99th percentile
 of the largest principal logarithmic strain.</p>
+<div id="compare" hidden>
+  <header><h3>Side by side</h3><button type="button" class="close">Close</button></header>
+  <div class="control together">
+    <label>pressure of all</label>
+    <input type="range" min="0" max="0" value="0" step="any" aria-label="pressure of all">
+    <output></output>
+  </div>
+  <div class="columns"></div>
+  <div class="grid"></div>
+  <div class="scroll"><table><tbody></tbody></table></div>
+</div>
 """
 
 
@@ -104,7 +79,7 @@ def explorer_data(rows: Sequence[Row], study: Study) -> dict[str, Any]:
     simulated = {row["design_id"] for row in rows}
     others = (row for row in _screened(study) if row["design_id"] not in simulated)
     found = [{"analysis": FULL, **row} for row in rows] + [*others]
-    columns = [c for c in _COLUMNS if any(row.get(c.key) is not None for row in found)]
+    columns = [c for c in FIGURES if any(row.get(c.key) is not None for row in found)]
     return {
         "columns": [
             {"heading": c.heading, "unit": c.unit, "key": c.key, "digits": c.digits}
@@ -133,7 +108,7 @@ def _novelty_of(generated: Path | None) -> Mapping[str, float]:
     return dict(zip(frame["design_id"], frame["novelty"].astype(float), strict=True))
 
 
-def _shown(value: Any, column: _Column) -> Any:
+def _shown(value: Any, column: Shown) -> Any:
     """Return a value as the page has it: without round-off, and without underscores."""
     if value is None or column.digits is None:
         plain = column.key in ("status", "origin")

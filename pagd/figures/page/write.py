@@ -7,12 +7,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from string import Template
 from typing import Any, Final
+from urllib.parse import quote
 
 from pagd.figures.captions import TOGETHER
-from pagd.figures.curves import curves_of
+from pagd.figures.curves import steps_data
 from pagd.figures.groups import FEW, Entry, by_mode, line_looks, read_entries
-from pagd.figures.load import has_blocked_force, has_trajectory, load_trajectory
-from pagd.figures.page.cards import card, json_text
+from pagd.figures.load import (
+    has_blocked_force,
+    has_trajectory,
+    load_blocked_force,
+    load_trajectory,
+)
+from pagd.figures.page.cards import card, json_text, write_card
+from pagd.figures.page.claims import claims
 from pagd.figures.page.explorer import explorer, explorer_data
 from pagd.figures.page.generative import SHOWN_ELSEWHERE, generative_sections
 from pagd.figures.page.libraries import datatables, datatables_style, plotly
@@ -23,12 +30,19 @@ from pagd.figures.page.rows import Row, rows_of
 from pagd.figures.page.run import what_was_run
 from pagd.figures.page.screening import screening
 from pagd.figures.page.study import Study, captions_of, performance_of, record_in
-from pagd.figures.style import BLOCKED, FREE, MODE_LOOKS, STRAIN_COLOURS, STRAIN_LABEL
-from pagd.figures.viewer import path_data
+from pagd.figures.style import (
+    BLOCKED,
+    FREE,
+    MODE_LOOKS,
+    STRAIN_COLOURS,
+    STRAIN_LABEL,
+    design_colours,
+)
+from pagd.figures.viewer import tip_data
 from pagd.files import write_text
 from pagd.record import Record
 
-__all__ = ["write_page"]
+__all__ = ["cards_beside", "write_page"]
 
 _SCRIPTS: Final = (
     "plots.js",
@@ -36,7 +50,9 @@ _SCRIPTS: Final = (
     "steps.js",
     "shape.js",
     "boxes.js",
+    "cards.js",
     "explorer.js",
+    "compare.js",
     "page.js",
 )
 
@@ -46,6 +62,7 @@ def write_page(
     out: Path,
     pictures: Path | None = None,
     study: Study | None = None,
+    cards: Path | None = None,
 ) -> None:
     """Write the page of some designs.
 
@@ -60,6 +77,9 @@ def write_page(
         Folder with gallery.png, trajectories.png, angles.png and forces.png; None leaves them out.
     study
         Where the results of the generative half lie; None leaves them out.
+    cards
+        Folder below that of ``out`` with NAME/card.js of every design, as :mod:`pagd.stages.export`
+        leaves it. None: they are written anew, beside the page, without files to take away.
 
     Raises
     ------
@@ -69,7 +89,9 @@ def write_page(
     study = study or Study()
     entries = read_entries(design_folders)
     rows = rows_of(entries, performance_of(study))
-    sections = numbered(_sections(entries, rows, pictures, study))
+    cards = cards or _cards_beside(entries, out)
+    addresses = {entry.name: _address(cards / entry.name, out) for entry in entries}
+    sections = numbered(_sections(entries, rows, pictures, study, addresses))
     text = Template(_asset("page.html")).substitute(
         style=f"{datatables_style()}\n{_asset('page.css')}",
         navigation="".join(f'<a href="#{s.name}">{escaped(s.title)}</a>' for s in sections),
@@ -81,13 +103,35 @@ def write_page(
     write_text(out, text)
 
 
+def cards_beside(page: Path) -> Path:
+    """Return the folder of the cards of a page that has none of its own: PAGE_files."""
+    return page.with_name(f"{page.stem}_files")
+
+
+def _cards_beside(entries: Sequence[Entry], out: Path) -> Path:
+    folder = cards_beside(out)
+    for entry in entries:
+        write_card(entry.folder, folder / entry.name)
+    return folder
+
+
+def _address(folder: Path, page: Path) -> str:
+    return quote(folder.relative_to(page.parent).as_posix())
+
+
 def _sections(
-    entries: Sequence[Entry], rows: Sequence[Row], pictures: Path | None, study: Study
+    entries: Sequence[Entry],
+    rows: Sequence[Row],
+    pictures: Path | None,
+    study: Study,
+    addresses: Mapping[str, str],
 ) -> list[Section]:
     """Return the sections in the order of the method; those without content are empty."""
-    cards = [card(entry, is_open=len(entries) <= FEW) for entry in entries]
+    few = len(entries) <= FEW
+    cards = [card(entry, addresses[entry.name], is_open=few) for entry in entries]
     return [
         Section("run", "What was run", what_was_run(entries, rows, _records(study))),
+        Section("paper", "Beside the paper", claims(study, rows)),
         Section("explorer", "Explorer", explorer() if rows else ""),
         *generative_sections(study),
         Section("screening", "What the designs can do", screening(study)),
@@ -128,12 +172,13 @@ def _paths(entries: Sequence[Entry], pictures: Path | None) -> str:
 
 
 def _content(entries: Sequence[Entry]) -> dict[str, Any]:
-    """Return what the scripts draw from, but for the shapes, which stand in the cards."""
+    """Return what the scripts draw from, but for what only the cards show."""
     groups = by_mode(entries)
     return {
         "strain": {"colours": STRAIN_COLOURS, "label": STRAIN_LABEL},
         "analyses": {"free": FREE, "held": BLOCKED},
         "modes": {mode: look.colour for mode, look in MODE_LOOKS.items()},
+        "palette": list(design_colours(["a", "b", "c", "d"]).values()),
         "groups": list(groups) if len(entries) > FEW else [],
         "designs": _designs(entries, groups),
     }
@@ -155,14 +200,22 @@ def _designs(
             "colour": lines[entry.name].colour,
             "dash": lines[entry.name].script,
             "path": _path(entry),
-            "steps": curves_of(entry.folder),
+            "held": _held(entry),
         }
         for entry in entries
     ]
 
 
 def _path(entry: Entry) -> dict[str, Any] | None:
-    return path_data(load_trajectory(entry.folder)) if has_trajectory(entry.folder) else None
+    return tip_data(load_trajectory(entry.folder)) if has_trajectory(entry.folder) else None
+
+
+def _held(entry: Entry) -> dict[str, Any] | None:
+    if not has_blocked_force(entry.folder):
+        return None
+    steps = steps_data(load_blocked_force(entry.folder))
+    # Without a force at any step there is nothing to draw.
+    return {key: steps[key] for key in ("pressure_kPa", "force_N")} if "force_N" in steps else None
 
 
 def _asset(name: str) -> str:
