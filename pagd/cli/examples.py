@@ -30,6 +30,7 @@ EXAMPLES: Final = {
     " --out diversity",
     "select": "pagd select --dataset dataset --generated generated -n 6 --out selection",
     "screen": "pagd screen mixed/designs.parquet --processes 2 --out screened",
+    "sample": "pagd sample --family half_bellows -n 100 --out bellows.csv",
     "status": "pagd status --json",
     "audit": "pagd audit --quick",
     "archive": "pagd archive results --out archive --zip archive.zip",

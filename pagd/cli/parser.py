@@ -49,7 +49,7 @@ _HEADINGS = {
         "deck",
     ),
     "results of designs": ("view", "report", "summary"),
-    "new designs": ("dataset", "embed", "generate", "diversity", "select"),
+    "new designs": ("dataset", "embed", "generate", "diversity", "select", "sample"),
     "many designs, approximately": ("screen",),
     "runs of the workflow": ("status", "audit"),
     "public data sets": ("archive", "check-archive"),
