@@ -23,6 +23,7 @@ from pagd.families.sampling import sample
 from pagd.geometry import Part, render, write_design_scad
 from pagd.record import read_record
 from pagd.repair import repair
+from pagd.simulation import simulate
 from pagd.stages.novelty import novelty_of
 from pagd.tables import GENERATED, Column, write_rows
 
@@ -347,6 +348,27 @@ def test_what_cannot_be_sampled_is_told(
     assert told.startswith(words)
     assert told.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_python_takes_designs_of_any_family(tmp_path: Path) -> None:
+    broken = {key: value for key, value in BELLOWS.items() if key != "name"} | {"t_e": 0.5}
+    given = (broken, bellows(t_e=0.5), design_from(json.dumps(broken)))
+    for number, design in enumerate(given):
+        result = simulate(design, tmp_path / f"design-{number}", name="thin")
+        assert result.status == "invalid_geometry"
+        assert result.design == bellows(t_e=0.5)
+    with pytest.raises(InputError, match="Unusable design: Lc is not a design parameter"):
+        simulate(broken | {"Lc": 1.0}, tmp_path / "other")
+
+
+def test_machines_read_designs_of_any_family(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["design", "show", json.dumps(BELLOWS), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    volumes = bellows().volumes(RULES)
+    assert document["family"] == "half_bellows"
+    assert document["L_T"] == 26.0
+    assert document["cavity_volume_mm3"] == pytest.approx(volumes.cavity)
+    assert document["violations"] == []
 
 
 def test_a_design_knows_what_it_is() -> None:

@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from family_samples import BAR, BELLOWS, write_family
 from figure_samples import solved
 
 from pagd.catalogue import design_from
 from pagd.cli import main
 from pagd.design import GeometryRules
+from pagd.figures.sections import sections_as_svg
 from pagd.mesh.msh import read_msh
 from pagd.record import Record, read_record
 from pagd.tables import read_rows, read_table
@@ -118,6 +120,21 @@ def test_both_families_are_in_one_table_and_on_one_page(bellows: Path, tmp_path:
 def test_all_pictures_are_drawn(bellows: Path) -> None:
     pictures = {"geometry", "mesh", "deformed", "pressure_volume", "contact"}
     assert {path.stem for path in (bellows / "figures").glob("*.png")} == pictures
+
+
+def test_it_is_exported_for_other_programs(bellows: Path, tmp_path: Path) -> None:
+    assert main(["export", str(bellows), "--out", str(tmp_path / "exported")]) == 0
+    record = read_record(tmp_path / "exported")
+    wanted = {"body.stl", "base.stl", "solids.step", "design.scad", "last_state.vtu"}
+    assert wanted <= {path.name for path in (tmp_path / "exported").iterdir()}
+    assert record.figures["left_out"] == {}
+
+
+def test_a_notebook_shows_its_sections(bellows: Path) -> None:
+    body, base = (pv.read(bellows / "repair" / f"{part}.stl") for part in ("body", "base"))
+    picture = sections_as_svg(body, base, design_from(json.dumps(BELLOWS)).design)
+    assert 'aria-label="sections of a bending design, half_bellows"' in picture
+    assert "26" in picture
 
 
 def test_a_family_of_ones_own_goes_through_all_stages(own: None, tmp_path: Path) -> None:
