@@ -6,6 +6,7 @@ Stages are imported where they are used: each needs libraries that the others do
 from __future__ import annotations
 
 import re
+import shlex
 from argparse import Namespace
 from pathlib import Path
 
@@ -174,7 +175,9 @@ def export(options: Namespace) -> Answer:
 
 def run_all(options: Namespace) -> Answer:
     """Run all stages of one design, each in a folder of its own under ``--out``."""
-    return _chain(options, "figures")
+    answer = _chain(options, "figures")
+    print(f"To look at it: pagd view {shlex.quote(str(options.out))}")
+    return answer
 
 
 def _chain(options: Namespace, last: str) -> Answer:
