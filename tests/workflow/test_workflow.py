@@ -40,7 +40,8 @@ KNOWN = [ROOT / "config" / f"{name}.csv" for name in ("table2", "published_desig
 
 
 def of_design(name: str, stages: tuple[str, ...] = STAGES) -> set[str]:
-    return {f"designs/{name}/{stage}" for stage in stages}
+    """What stages of a design leave, and its files beside the page, which are made of any."""
+    return {f"designs/{name}/{stage}" for stage in stages} | {f"report/designs/{name}"}
 
 
 def said(answer: subprocess.CompletedProcess[str]) -> str:
@@ -238,7 +239,7 @@ def test_another_family_has_no_place_among_known_designs(changed: Project) -> No
 
 def test_a_changed_picture_runs_pictures_only(changed: Project) -> None:
     changed.write(STRAIGHT, SLANTED, THIN, figures={"resolution_dpi": 70})
-    drawn = {f"designs/{name}/figures" for name in ("straight", "slanted", "thin")}
+    drawn = {p for name in ("straight", "slanted", "thin") for p in of_design(name, ("figures",))}
     pictures = {"figures/together", "figures/simulated", "report/index.html"}
     told = {"ro-crate-metadata.json", "provenance"}
     assert changed.pending() == drawn | pictures | told
