@@ -8,7 +8,10 @@ x86_only='intel-cmplr-lib-ur|intel-openmp|mkl|pypardiso|tbb|tcmlib|umf'
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-"$(setup/find-python.sh)" -m venv "$scratch"
+# Debian's own Python where it is there: newer patch versions may have packages that it refuses.
+debian=/usr/bin/python3.11
+[ -x "$debian" ] || debian=$(setup/find-python.sh)
+"$debian" -m venv "$scratch"
 "$scratch/bin/pip" install --quiet --upgrade pip
 "$scratch/bin/pip" install --quiet --editable '.[cluster,dev]'
 {
