@@ -57,11 +57,13 @@ def claims_of(study: Study, rows: Sequence[Row]) -> Iterator[Claim]:
     rows
         Simulated designs, of :func:`pagd.figures.page.rows.rows_of`.
     """
-    yield from _of_data(study)
-    yield from _of_generator(study)
-    yield from _of_diversity(study)
-    yield from _of_analysis(rows)
-    yield from _of_table_2(rows)
+    method = [*_of_data(study), *_of_generator(study), *_of_diversity(study)]
+    paper = list(_of_table_2(rows))
+    yield from method
+    # Designs of one's own alone are beside nothing in the paper.
+    if method or paper:
+        yield from _of_analysis(rows)
+    yield from paper
 
 
 def _of_data(study: Study) -> Iterator[Claim]:

@@ -126,10 +126,10 @@ def _sections(
     study: Study,
     addresses: Mapping[str, str],
 ) -> list[Section]:
-    """Return the sections in the order of the method; those without content are empty."""
+    """Return the sections in the order of the method, a few designs before all; some are empty."""
     few = len(entries) <= FEW
     cards = [card(entry, addresses[entry.name], is_open=few) for entry in entries]
-    return [
+    sections = [
         Section("run", "What was run", what_was_run(entries, rows, _records(study))),
         Section("paper", "Beside the paper", claims(study, rows)),
         Section("explorer", "Explorer", explorer() if rows else ""),
@@ -138,8 +138,10 @@ def _sections(
         Section("performance", "Performance", _performance(entries, study)),
         Section("shapes", "Deformed shapes", embedded(pictures, ("gallery",), TOGETHER)),
         Section("paths", "Trajectories, angles and forces", _paths(entries, pictures)),
-        Section("designs", "Each design", "\n".join(cards)),
     ]
+    designs = Section("designs", "Each design", "\n".join(cards))
+    # Whoever asks for a few designs wants to see them.
+    return [designs, *sections] if few else [*sections, designs]
 
 
 def _records(study: Study) -> list[Record | None]:
