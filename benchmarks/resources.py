@@ -79,8 +79,11 @@ def taken(folders: Sequence[Path]) -> dict[str, list[Job]]:
         for rule, stages in _STAGES.items():
             jobs = [_by_records([one / stage for stage in stages]) for one in designs]
             found.setdefault(rule, []).extend(job for job in jobs if job)
-        parts = sorted((folder / "screening" / "parts").glob("*"))
-        found.setdefault(_PART, []).extend(job for part in parts if (job := _by_records([part])))
+        # Whole folders of one stage each, by the rule whose jobs they are.
+        alone = {"export": folder / "report" / "designs", _PART: folder / "screening" / "parts"}
+        for rule, place in alone.items():
+            jobs = [_by_records([one]) for one in sorted(place.glob("*"))]
+            found.setdefault(rule, []).extend(job for job in jobs if job)
         measured = folder / "benchmarks"
         files = {file: file.stem for file in sorted(measured.glob("*.tsv"))}
         files |= {measured / "screening" / f"{t}.tsv": "screening" for t in _SCREENED}

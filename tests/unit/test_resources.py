@@ -41,6 +41,7 @@ def results(tmp_path: Path) -> Path:
     for number in (1, 2, 3):
         place = tmp_path / f"screening/parts/training_{number}"
         record(place, "screening", 100 * number, 60 * number)
+    record(tmp_path / "report/designs/one", "export", 400, 6)
     (tmp_path / "benchmarks").mkdir()
     (tmp_path / "benchmarks/selection.tsv").write_text("s\tmax_rss\n30\t100\n")
     (tmp_path / "benchmarks/screening").mkdir()
@@ -65,6 +66,7 @@ def test_jobs_are_told_beside_what_their_rules_ask_for(results: Path) -> None:
     assert found == {
         "prepare": ["2", "300", "300", "2,000", "0.40", "0.40", "40"],
         "solve": ["1", "1,500", "1,500", "4,000", "1.50", "1.50", "120"],
+        "export": ["1", "400", "400", "2,000", "0.10", "0.10", "20"],
         "screen_part": ["3", "200", "300", "2,000", "2.00", "3.00", "60"],
         "screened": ["1", "210", "210", "2,000", "1.00", "1.00", "10"],
         "select": ["1", "105", "105", "1,000", "0.50", "0.50", "10"],
