@@ -2,9 +2,9 @@
 
     python benchmarks/opening.py results [--designs 1000] [--page docs/report.md]
 
-The simulated designs of a run are repeated, by links, until there are enough. Chromium opens the
-page from the disk, without a network and without a graphics card, --times times. A page of one of
-the designs alone is the peer: what it takes is what the libraries in the page take.
+The simulated designs of a run are repeated, by links, until there are enough; all else of the page
+is that of the run. Chromium opens it from the disk, without a network and without a graphics card,
+--times times. The page with one of the designs is the peer: what is the same for all takes as long.
 """
 
 from __future__ import annotations
@@ -25,11 +25,26 @@ from performance.page import must_have_section, publish, table
 
 from pagd.errors import InputError
 from pagd.figures.load import has_trajectory
-from pagd.figures.page import write_page
+from pagd.figures.page import Study, write_page
 
 _SECTION = "opening"
 _FLAGS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
 _FLAGS += ("--enable-unsafe-swiftshader",)
+#: What a run has for the page beside single designs, as in workflow/rules/common.smk.
+_PLACES = {
+    "dataset": "dataset",
+    "embedding": "embedding",
+    "generated": "generated",
+    "selection": "selection",
+    "diversity": "summary/diversity.json",
+    "comparison": "diversity",
+    "pictures": "figures/generative",
+    "simulated": "figures/simulated",
+    "screened": "screening/generated",
+    "screened_training": "screening/training",
+    "fronts": "summary/fronts.json",
+    "screening_pictures": "figures/screening",
+}
 _LOADED_MS = "performance.timing.loadEventEnd - performance.timing.navigationStart"
 
 
@@ -44,10 +59,11 @@ def repeated(results: Path, count: int, folder: Path) -> list[Path]:
     return links
 
 
-def written(designs: Sequence[Path], page: Path) -> float:
+def written(designs: Sequence[Path], page: Path, results: Path) -> float:
     """Write the page, without its cards, which are read when they are opened; its size in MB."""
+    study = Study(**{name: results / place for name, place in _PLACES.items()})
     cards = page.parent / "cards"
-    write_page(designs, page, cards=cards)
+    write_page(designs, page, results / "figures" / "together", study, cards=cards)
     return page.stat().st_size / 1e6
 
 
@@ -75,7 +91,7 @@ def measured(results: Path, counts: Sequence[int], times: int) -> str:
         with tempfile.TemporaryDirectory(prefix="pagd-") as name:
             folder = Path(name)
             page = folder / "index.html"
-            size = written(repeated(results, count, folder), page)
+            size = written(repeated(results, count, folder), page, results)
             seconds = np.array(opened_s(page, times))
         told = [f"{np.median(seconds):.2f}", f"{seconds.min():.2f}", f"{seconds.max():.2f}"]
         rows.append([f"{count:,}", f"{size:.1f}", *told])

@@ -14,8 +14,8 @@ __all__ = ["SERVED", "SERVER", "ask_server"]
 #: Environment variable with the path of the server's socket.
 SERVER = "PAGD_SERVER"
 
-#: Subcommands that a server takes: the stages of one design that come without pictures.
-SERVED = ("geometry", "repair", "mesh", "solve", "metrics")
+#: Subcommands that a server takes: the stages of one design that draw no pictures.
+SERVED = ("geometry", "repair", "mesh", "solve", "metrics", "export")
 
 _STANDARD_STREAMS = (0, 1, 2)
 _FAULT, _INTERRUPTED = os.EX_SOFTWARE, 130

@@ -15,6 +15,7 @@ _MODULES = (
     "pagd.stages.mesh",
     "pagd.stages.solve",
     "pagd.stages.metrics",
+    "pagd.stages.export",
 )
 
 

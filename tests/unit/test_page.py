@@ -9,6 +9,7 @@ import zlib
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from design_samples import TABLE2_MIXED
 from figure_samples import SIZE, block, path_only, record, solved, states_of, three_designs
@@ -356,25 +357,43 @@ def test_claims_are_beside_what_was_measured(study):
         | {"bending_deg": 91.2, "twist_deg": 0.04},
         {"design_id": "failed", "origin": "table2", "status": "mesh_failed"},
     ]
-    hull = measured("gmm", "hull_ratio", 1.18, low=0.87, high=1.61)
     said = [one.measured for one in claims_of(study, rows)]
     assert said == [
         "1,900 designs: 901 bending, 999 twisting",
-        "t-SNE with perplexity 30, trustworthiness 0.900",
-        "of 1,000 generated designs bending 25 %, twisting 25 %, mixed 50 %",
+        "t-SNE with perplexity 30: of 50 % of the designs the nearest one in the plane is of their"
+        " own category",
+        "not by the data alone (gmm_plain: mixed 5 % of the designs); gmm: mixed 50 % of the"
+        " designs, by a component between the two whose weight is a setting",
         "2 designs: 1 ok, 1 mesh failed",
         "straight at 50 kPa: bends by 91°, twists not",
     ]
+    # Another generator has no such component; without a comparison, nothing is known of the plain.
+    other = stage_record(study.dataset.with_name("kde"), {"mode_share": {"mixed": 0.02}})
+    found = [one.measured for one in claims_of(Study(generated=other), [])]
+    assert found == ["None: mixed 2 % of the designs"]
+
+
+def test_diversity_is_beside_what_the_paper_says(study):
+    rows = [
+        measured("gmm", "hull_ratio", 1.18, low=0.87, high=1.61),
+        *(
+            measured(name, "novelty", value, "plane_sample")
+            for name, value in {"gmm": 0.049, "training": 0.0096}.items()
+        ),
+    ]
     diversity = study.diversity.with_name("hull.json")
-    diversity.write_text(json.dumps(COMPARISON | {"rows": [hull]}))
-    (told,) = (
-        one for one in claims_of(replace(study, diversity=diversity), []) if "50" in one.said
-    )
-    assert (
-        told.measured
-        == "1.18 times the area (0.87 to 1.61 for other fifties); no larger hull is certain"
-    )
-    assert claims(Study(), []) == ""
+    diversity.write_text(json.dumps(COMPARISON | {"rows": rows}))
+    novelty, hull = (one.measured for one in claims_of(Study(diversity=diversity), []))
+    assert novelty.endswith("gmm 0.049, training designs among themselves 0.010")
+    assert hull == "1.18 times the area (0.87 to 1.61 for other fifties); no larger hull is certain"
+    rows[0]["low"] = 1.02
+    diversity.write_text(json.dumps(COMPARISON | {"rows": rows}))
+    told = [one.measured for one in claims_of(Study(diversity=diversity), [])]
+    assert told[1] == "1.18 times the area (1.02 to 1.61 for other fifties)"
+
+
+def test_own_designs_are_beside_no_paper():
+    assert claims(Study(), [{"design_id": "a", "origin": "own", "status": "ok"}]) == ""
 
 
 # ---- page of a study ------------------------------------------------------------------------
@@ -420,10 +439,19 @@ def study(tmp_path_factory):
     dataset = stage_record(root / "dataset", found, dataset={"seed": 7})
     setting = {"method": "tsne", "perplexity": 30.0, "seed": 8}
     embedding = stage_record(root / "embedding", {"trustworthiness": 0.9}, embedding=setting)
+    # Two islands, each of a straight and a slanted design.
+    designs = [replace(TABLE2_MIXED, alpha=alpha) for alpha in (0.0, 0.0, 1.0, 1.0)]
+    names = ["a", "b", "c", "d"]
+    frame_of(designs, names, ["random"] * 4).to_parquet(dataset / "designs.parquet")
+    places = np.array([[0.0, 0.0], [0.1, 0.0], [5.0, 0.0], [0.11, 0.0]])
+    table = pd.DataFrame({"design_id": names, "z1": places[:, 0], "z2": places[:, 1]})
+    table.to_parquet(embedding / "points.parquet")
     shares = {"bending": 0.25, "twisting": 0.25, "mixed": 0.5}
     refused = {"invalid": 2, "copies_of_training": 1, "duplicates": 3, "other_mode": 0}
     drawn = {"designs": 1000, "mode_share": shares, "novelty_mean": 1.25, "refused": refused}
     generated = stage_record(root / "generated", drawn, generator={"method": "gmm", "seed": 9})
+    plain = {"mode_share": {"gmm_plain": {"bending": 0.48, "twisting": 0.47, "mixed": 0.05}}}
+    comparison = stage_record(root / "comparison", plain)
     pictures_in(root / "simulated", SHOWN_ELSEWHERE)
     pictures_in(root / "screening", SCREENED_PICTURES)
     elsewhere = (*SHOWN_ELSEWHERE, *SCREENED_PICTURES)
@@ -443,6 +471,7 @@ def study(tmp_path_factory):
         embedding=embedding,
         generated=generated,
         diversity=root / "diversity.json",
+        comparison=comparison,
         performance=root / "performance.parquet",
         pictures=root / "pictures",
         simulated=root / "simulated",

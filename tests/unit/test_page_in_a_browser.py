@@ -64,6 +64,8 @@ def browser() -> Iterator[Browser]:
         found.close()
 
 
+#: What a folder may be called.
+ODD = '50% "a" #b'
 #: By day, by night, and in a hand.
 everywhere = pytest.mark.parametrize("page", ["light", "dark", "phone"], indirect=True)
 
@@ -318,6 +320,60 @@ def test_more_than_four_designs_are_not_compared(page: Page) -> None:
     expect(page.locator("#explorer-compare")).to_be_disabled()
     click(page, "d5")
     expect(page.locator("#explorer-compare")).to_be_enabled()
+
+
+def test_another_comparison_takes_the_place_of_the_first(page: Page) -> None:
+    def compare(*wanted: str) -> Locator:
+        page.locator("#explorer-clear").click()
+        for name in wanted:
+            click(page, name)
+        page.locator("#explorer-compare").click()
+        found = page.locator("#compare[data-shown]")
+        found.wait_for()
+        return found
+
+    box = compare("d0", "d2")
+    before = page.evaluate("redraws.size")
+    box.locator("article").nth(1).locator("canvas").first.wait_for()
+    # Two designs of a table alone: neither a shape nor a plot nor a slider.
+    box = compare("d8", "d9")
+    assert box.locator("article, .plot").count() == 0
+    expect(box.locator(".together")).to_be_hidden()
+    assert page.evaluate("redraws.size") == before - 6
+    # One whose file is missing is told of.
+    box = compare("d0", "d3")
+    assert box.locator("article h3").all_inner_texts() == ["d0"]
+    assert "cards/d3/card.js cannot be read" in box.locator(".missing").inner_text()
+    # Closed while its files are read, it stays closed.
+    page.evaluate("""() => { const found = new Comparison(new Explorer(content.explorer));
+      found.explorer.table = null; found.show([0, 2]); found.close(); }""")
+    page.wait_for_timeout(300)
+    expect(page.locator("#compare")).to_be_hidden()
+    assert page.locator("#compare article").count() == 0
+    page.expected.append("ERR_FILE_NOT_FOUND")  # type: ignore[attr-defined]
+
+
+@pytest.fixture
+def moved(tmp_path: Path) -> Path:
+    """A page of one design with an odd name, which was made elsewhere."""
+    made = tmp_path / "made"
+    folder = solved(tmp_path / "plain", mode="mixed", origin="own").rename(tmp_path / ODD)
+    write_page([folder], made / "index.html")
+    return made.rename(tmp_path / "sent to #1 & others") / "index.html"
+
+
+def test_a_page_goes_elsewhere_with_its_cards(browser: Browser, moved: Path) -> None:
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto(moved.as_uri())
+        card = page.locator(".card")
+        # A few designs are shown at once.
+        card.locator(".shape canvas").first.wait_for()
+        assert card.get_attribute("id") == f"design-{ODD}"
+        card.locator("summary").first.click()
+        expect(card).not_to_have_attribute("open", "")
+        page.locator("#explorer-table tbody a").click()
+        expect(card).to_have_attribute("open", "")
 
 
 def test_paths_are_shown_by_mode(page: Page) -> None:

@@ -70,6 +70,7 @@ if GENERATIVE:
         "generated": "results/generated",
         "selection": "results/selection",
         "diversity": "results/summary/diversity.json",
+        "comparison": "results/diversity",
         "pictures": "results/figures/generative",
     }
 
@@ -232,11 +233,27 @@ def of_all_designs(pattern):
 
 def of_drawn_designs(pattern):
     """The same for the designs that pictures are drawn of."""
+    return of_first_designs(pattern, "drawn_designs")
+
+
+def of_exported_designs(pattern):
+    """The same for the designs that have a card on the page."""
+    return of_first_designs(pattern, "exported_designs")
+
+
+def of_first_designs(pattern, key):
+    """The same for so many designs as a key of the section ``figures`` says."""
 
     def paths(wildcards):
-        return expand(pattern, design=list(all_designs())[: CONFIG["figures"]["drawn_designs"]])
+        return expand(pattern, design=list(all_designs())[: CONFIG["figures"][key]])
 
     return paths
+
+
+def pictures_of_design(wildcards):
+    """The pictures of a design, if any are drawn of it."""
+    drawn = list(all_designs())[: CONFIG["figures"]["drawn_designs"]]
+    return rules.figures.output.figures if wildcards.design in drawn else []
 
 
 def sum_up_what_is_there():

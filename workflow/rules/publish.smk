@@ -53,16 +53,19 @@ rule export:
         mesh=rules.prepare.output.mesh,
         solve=rules.solve.output.solve,
         metrics=rules.metrics.output.metrics,
-        figures=rules.figures.output.figures,
+        figures=pictures_of_design,
     output:
         export=directory("results/report/designs/{design}"),
     log:
         "results/logs/export/{design}.log",
     benchmark:
         "results/benchmarks/export/{design}.tsv"
+    retries: RETRIES
     resources:
-        mem_mb=2000,
-        runtime=20,
+        mem_mb=growing(2000),
+        runtime=growing(20),
+        tries_left=tries_left,
+        tmpdir=None,
     params:
         version=STAGE_VERSIONS["export"],
         config=config_of("export"),
@@ -71,6 +74,7 @@ rule export:
         "Export design {wildcards.design}: surfaces, solids, moulds, tables, card of the page."
     shell:
         "pagd export {params.design:q} --config {params.config:q}"
+        " --allotted {resources.runtime} {resources.mem_mb} {resources.tries_left}"
         " --keep-going --out {output.export:q} > {log:q} 2>&1"
 
 
@@ -194,10 +198,10 @@ rule pictures_screened:
 
 rule report_page:
     input:
-        mesh=of_drawn_designs(rules.prepare.output.mesh),
-        solve=of_drawn_designs(rules.solve.output.solve),
-        metrics=of_drawn_designs(rules.metrics.output.metrics),
-        cards=of_drawn_designs(rules.export.output.export),
+        mesh=of_exported_designs(rules.prepare.output.mesh),
+        solve=of_exported_designs(rules.solve.output.solve),
+        metrics=of_exported_designs(rules.metrics.output.metrics),
+        cards=of_exported_designs(rules.export.output.export),
         pictures=rules.pictures_together.output.pictures,
         study=list(STUDY.values()),
     output:

@@ -5,7 +5,10 @@ const files = new Map();
 
 // Each file calls this with what it holds.
 function takeCard(data) {
-  files.get(data.name)?.resolve(data);
+  const file = files.get(data.name);
+  if (!file) return;
+  file.isRead = true;
+  file.resolve(data);
 }
 
 function cardOf(name) {
@@ -20,7 +23,14 @@ function loadCard(name) {
     files.set(name, file);
     const script = document.createElement("script");
     script.src = cardOf(name).dataset.address + "/card.js";
-    script.addEventListener("error", () => file.reject(new Error(script.getAttribute("src"))));
+    // Nothing comes of a promise that is kept; whoever asks once more has the file read once more.
+    const fail = () => {
+      if (!file.isRead) files.delete(name);
+      file.reject(new Error(`${script.getAttribute("src")} cannot be read: it must lie beside this page.`));
+      script.remove();
+    };
+    script.addEventListener("error", fail);
+    script.addEventListener("load", fail);
     document.head.append(script);
   }
   return files.get(name).promise;
@@ -38,7 +48,7 @@ async function fillCard(card) {
   if (card.dataset.filled) return;
   card.dataset.filled = "yes";
   const name = card.id.slice("design-".length);
-  const body = document.createElement("div");
+  const body = card.querySelector(":scope > div") || document.createElement("div");
   body.innerHTML = '<p class="note">Loading …</p>';
   card.append(body);
   try {
@@ -47,7 +57,8 @@ async function fillCard(card) {
     showCard(body, designOf(name), data, card.dataset.address);
   } catch (error) {
     body.innerHTML = '<p class="reason"></p>';
-    body.firstChild.textContent = `${error.message} cannot be read: it must lie beside this page.`;
+    body.firstChild.textContent = error.message;
+    delete card.dataset.filled;
   }
 }
 
@@ -74,11 +85,20 @@ function openCard(name) {
   card.scrollIntoView();
 }
 
+// The name in a link to a design; what nobody has encoded is taken as it is.
+function nameIn(hash) {
+  const text = hash.slice("#design-".length);
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
 // Links to a design lead to its card, and open it.
 function followLinks() {
   const follow = () => {
-    const name = decodeURIComponent(location.hash);
-    if (name.startsWith("#design-")) openCard(name.slice("#design-".length));
+    if (location.hash.startsWith("#design-")) openCard(nameIn(location.hash));
   };
   addEventListener("hashchange", follow);
   document.addEventListener("click", (event) => {

@@ -21,7 +21,10 @@ class Comparison {
     this.button = document.getElementById("explorer-compare");
     this.slider = this.box.querySelector(".together input");
     this.output = this.box.querySelector(".together output");
+    this.missing = this.box.querySelector(".missing");
     this.viewers = [];
+    this.plots = [];
+    this.asked = 0;
     this.button.addEventListener("click", () => this.show([...explorer.chosen]));
     this.box.querySelector(".close").addEventListener("click", () => this.close());
     this.slider.addEventListener("input", () => this.press(Number(this.slider.value)));
@@ -36,21 +39,28 @@ class Comparison {
   }
 
   close() {
+    this.asked++;
     this.box.hidden = true;
-    this.viewers.forEach((viewer) => viewer.hide());
-    this.viewers = [];
+    delete this.box.dataset.shown;
+    this.viewers.forEach((viewer) => viewer.close());
+    this.plots.forEach(([element, draw]) => forget(element, draw));
+    [this.viewers, this.plots] = [[], []];
     for (const part of this.box.querySelectorAll(".columns, .grid")) part.replaceChildren();
   }
 
   async show(rows) {
     this.close();
+    const asked = this.asked;
     this.box.hidden = false;
     this.box.scrollIntoView();
     this.tabulate(rows);
     const linked = rows.filter((row) => this.explorer.links.has(row));
     const found = await Promise.all(linked.map((row) => this.load(row)));
+    // Closed, or asked for other designs, while the files were read.
+    if (asked !== this.asked) return;
+    this.missing.textContent = found.map(({ error }) => error).filter(Boolean).join(" ");
     const compared = found
-      .filter(Boolean)
+      .filter(({ error }) => !error)
       .map((one, i) => ({ ...one, dash: "solid", colour: content.palette[i] }));
     this.addShapes(compared.filter(({ shape }) => shape));
     this.addPlots(compared);
@@ -61,8 +71,8 @@ class Comparison {
     const name = this.explorer.value(row, "design_id");
     try {
       return { ...(await loadCard(name)), name };
-    } catch {
-      return null; // its card says that the file is missing
+    } catch (error) {
+      return { error: error.message };
     }
   }
 
@@ -109,10 +119,10 @@ class Comparison {
     this.box.querySelector(".together").hidden = !most;
     this.slider.max = most;
     this.slider.value = most;
-    this.tell(most);
+    if (most) this.press(most);
   }
 
-  // Each shape goes to its recorded pressure that is nearest.
+  // Each shape goes to its recorded pressure that is nearest; of two that are, to the first.
   press(pressure) {
     this.tell(pressure);
     for (const viewer of this.viewers) {
@@ -139,11 +149,12 @@ class Comparison {
     this.box.querySelector(".grid").append(...wanted.map(({ element }) => element));
     for (const { title, unit, points, there, element } of wanted) {
       const about = { connectgaps: true, hovertemplate: "%{x:.4~r} kPa: %{y:.4~r}" };
-      register(
+      const draw = register(
         element,
         () => there.map((one) => curve(one, ...points(one), about)),
         () => flatLayout(title, axis("pressure, kPa"), axis(unit), { showlegend: there.length > 1 }),
       );
+      this.plots.push([element, draw]);
     }
   }
 }

@@ -172,7 +172,7 @@ class Explorer {
       return `<span class="status ${value === "ok" ? "ok" : "failed"}">${text}</span>`;
     }
     const linked = key === "design_id" && this.links.has(number);
-    return linked ? `<a href="#design-${text}">${text}</a>` : text;
+    return linked ? `<a href="#design-${encodeURIComponent(value)}">${text}</a>` : text;
   }
 
   orderOfChosen() {

@@ -169,8 +169,8 @@ class Paths {
 function drawPaths() {
   const designs = content.designs.filter((design) => design.path);
   if (!designs.length) return;
-  const watch = new IntersectionObserver(([{ isIntersecting }]) => {
-    if (!isIntersecting) return;
+  const watch = new IntersectionObserver((entries) => {
+    if (!entries.at(-1).isIntersecting) return;
     watch.disconnect();
     new Paths(designs);
   }, { rootMargin: "600px" });

@@ -3,7 +3,7 @@
 const content = JSON.parse(document.getElementById("data").textContent);
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 const options = { responsive: true, displaylogo: false, displayModeBar: false };
-const redraws = [];
+const redraws = new Set();
 
 function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
@@ -55,7 +55,13 @@ function flatLayout(title, x, y, more) {
 
 function register(element, traces, layout) {
   const draw = () => Plotly.react(element, traces(), layout(), options);
-  redraws.push(draw);
+  redraws.add(draw);
   draw();
   return draw;
+}
+
+// A plot that is not wanted any more.
+function forget(element, draw) {
+  redraws.delete(draw);
+  Plotly.purge(element);
 }

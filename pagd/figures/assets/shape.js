@@ -112,14 +112,24 @@ class Viewer {
     this.course = path && box.querySelector(".course");
     if (this.angles) this.drawAngles();
     if (this.course) this.drawCourse();
-    redraws.push(() => this.shown && Plotly.react(this.element, this.traces(), this.layout(), options));
+    this.redraw = () =>
+      this.shown && Plotly.react(this.element, this.traces(), this.layout(), options);
+    redraws.add(this.redraw);
     this.watch();
   }
 
-  // Browsers keep only some WebGL pictures alive: those out of sight are given up.
+  // Browsers keep only some WebGL pictures alive: those out of sight are given up. The last entry is
+  // how it stands, where there are several.
   watch() {
-    const seen = ([{ isIntersecting }]) => (isIntersecting ? this.show() : this.hide());
-    new IntersectionObserver(seen, { rootMargin: "300px" }).observe(this.element);
+    const seen = (entries) => (entries.at(-1).isIntersecting ? this.show() : this.hide());
+    this.watcher = new IntersectionObserver(seen, { rootMargin: "300px" });
+    this.watcher.observe(this.element);
+  }
+
+  close() {
+    this.watcher.disconnect();
+    redraws.delete(this.redraw);
+    this.hide();
   }
 
   get state() {

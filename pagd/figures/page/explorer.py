@@ -48,6 +48,7 @@ of the largest principal logarithmic strain.</p>
     <input type="range" min="0" max="0" value="0" step="any" aria-label="pressure of all">
     <output></output>
   </div>
+  <p class="reason missing"></p>
   <div class="columns"></div>
   <div class="grid"></div>
   <div class="scroll"><table><tbody></tbody></table></div>

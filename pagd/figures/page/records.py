@@ -23,8 +23,8 @@ _OF_MESH: Final = (
     Shown("wedges", "", "wedges", 0),
     Shown("nodes", "", "nodes", 0),
     Shown("scaled Jacobian, smallest", "", "scaled_jacobian_min", 3),
-    Shown("of 1 % of the elements below", "", "scaled_jacobian_p01", 3),
-    Shown("median", "", "scaled_jacobian_median", 3),
+    Shown("scaled Jacobian, 1 % below", "", "scaled_jacobian_p01", 3),
+    Shown("scaled Jacobian, median", "", "scaled_jacobian_median", 3),
     Shown("volume", "mm³", "volume_mm3", 1),
     Shown("error of the volume", "%", "volume_error", 4, 100.0),
 )

@@ -22,7 +22,7 @@ class Study:
     """Where the results of the generative half lie; whatever is None or missing is left out.
 
     dataset, embedding, generated, selection: folders of these stages, with their record.json.
-    diversity: JSON file of the comparison of generators.
+    diversity: JSON file of the comparison of generators; comparison: folder of its stage.
     performance: Parquet table of all simulated designs, with their novelty.
     pictures: folder with NAME.png and captions.json, of data set, generator and diversity.
     simulated, screening_pictures: the same of simulated designs, and of screened ones.
@@ -35,6 +35,7 @@ class Study:
     generated: Path | None = None
     selection: Path | None = None
     diversity: Path | None = None
+    comparison: Path | None = None
     performance: Path | None = None
     pictures: Path | None = None
     simulated: Path | None = None
