@@ -18,6 +18,8 @@ __all__ = ["Finding", "abandoned", "discard", "findings", "wanted_again"]
 #: Stages of a design, and of a study, in the order in which each makes use of those before.
 OF_DESIGN = ("geometry", "repair", "mesh", "solve", "metrics", "figures")
 OF_STUDY = ("dataset", "embedding", "generated", "diversity", "selection")
+#: Where the stage export leaves its folders, one a design.
+EXPORTS = Path("report", "designs")
 # These are made by one job, which Snakemake does as a whole or not at all.
 _TOGETHER = ("geometry", "repair", "mesh")
 
@@ -61,6 +63,8 @@ def wanted_again(results: Path, statuses: Collection[str]) -> Iterator[Finding]:
     """Yield the folder of the first stage of every design that ended with one of the statuses."""
     told = set()
     for folder in _stage_folders(results):
+        if folder.parent == results / EXPORTS:  # passes on how the stages before have ended
+            continue
         try:
             record = read_record(folder)
         except InputError:  # a finding of its own
@@ -106,7 +110,7 @@ def _stage_folders(results: Path) -> Iterator[Path]:
     one_by_one = [results / name for name in OF_STUDY]
     designs = [folder / stage for folder in _folders(results / "designs") for stage in OF_DESIGN]
     screened = [*_folders(results / "screening"), *_folders(results / "screening" / "parts")]
-    for folder in (*one_by_one, *screened, *designs):
+    for folder in (*one_by_one, *screened, *designs, *_folders(results / EXPORTS)):
         if folder.is_dir() and folder.name != "parts":
             yield folder
 
@@ -124,7 +128,7 @@ def _made_with(results: Path, folder: Path) -> list[Path]:
         return [results / stage for stage in OF_STUDY[OF_STUDY.index(name) :]]
     if parent == results / "screening" / "parts":
         return [folder, results / "screening" / name.rpartition("_")[0]]
-    if parent == results / "screening":
+    if parent in (results / "screening", results / EXPORTS):
         return [folder]
     first = 0 if name in _TOGETHER else OF_DESIGN.index(name)
-    return [parent / stage for stage in OF_DESIGN[first:]]
+    return [*(parent / stage for stage in OF_DESIGN[first:]), results / EXPORTS / parent.name]

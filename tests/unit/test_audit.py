@@ -82,6 +82,26 @@ def test_what_is_discarded_takes_with_it_what_was_made_of_it(results: Path) -> N
     assert list(findings(results, thorough=True)) == []
 
 
+def test_damaged_exports_are_made_again_alone_and_with_their_design(
+    results: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    exports = results / "report" / "designs"
+    for name in ("a", "bb"):
+        make(results, name, "export")
+        exports.mkdir(parents=True, exist_ok=True)
+        (results / "designs" / name / "export").rename(exports / name)
+    flip_a_bit(exports / "a" / "made.bin")
+    assert [found.folder for found in findings(results, thorough=True)] == [exports / "a"]
+    assert main(["audit", str(results), "--discard"]) == 0
+    assert {path.name for path in exports.iterdir()} == {"bb"}
+    # What a card is made of, and how its design has ended, is no matter of the card.
+    (results / "designs/bb/solve/made.bin").unlink()
+    assert main(["audit", str(results), "--discard"]) == 0
+    assert not (exports / "bb").exists()
+    make(results, "bb", *CHAIN, status=Status.crashed)
+    assert {found.folder.parent.name for found in wanted_again(results, [Status.crashed])} == {"bb"}
+
+
 def test_a_damaged_data_set_takes_the_generative_half_with_it(tmp_path: Path) -> None:
     folders = {"generate": "generated"}
     for stage in ("dataset", "embedding", "generate", "selection"):
