@@ -69,8 +69,8 @@ def test_the_files_are_those_that_a_run_leaves(tmp_path: Path) -> None:
     (words,) = (each[1:] for each in commands() if each[:2] == ["pagd", "run"])
     words[words.index("my_design.yaml")] = str(tmp_path / "my_design.yaml")
     words[words.index("my_design")] = str(tmp_path / "my_design")
-    words[words.index("--pressure-kPa") + 1] = "10"
-    coarse = ["--block-mm", "8", "--config", json.dumps({"figures": {"resolution_dpi": 50}})]
+    words[words.index("--pressure-kPa") + 1] = "4"
+    coarse = ["--block-mm", "12", "--config", json.dumps({"figures": {"resolution_dpi": 50}})]
     assert main([*words, *coarse]) == 0
     left = {path for path in (tmp_path / "my_design").rglob("*") if path.is_file()}
     told = {name: set((tmp_path / "my_design").glob(name)) for name in files_told()}
