@@ -5,6 +5,7 @@ from types import ModuleType
 import pytest
 
 from pagd import tables
+from pagd.figures.page.downloads import DESCRIPTIONS
 from pagd.summary import FOR_PEOPLE
 
 ROOT = Path(__file__).parents[2]
@@ -37,6 +38,12 @@ def test_every_declared_table_has_its_section(script: ModuleType) -> None:
     assert len(declared) == 12
     told = [table.columns for table in script.TABLES]
     assert all(columns in told for columns in declared)
+
+
+def test_every_file_that_a_card_offers_is_named(script: ModuleType) -> None:
+    rows = script.exports().splitlines()
+    assert all(f"| `{name}` | {meaning} |" in rows for name, meaning in DESCRIPTIONS.items())
+    assert script.exports() in script.page()
 
 
 def test_every_figure_of_the_table_for_people_is_named(script: ModuleType) -> None:

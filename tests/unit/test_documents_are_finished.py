@@ -9,12 +9,15 @@ ROOT = Path(__file__).parents[2]
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 GAP = re.compile(r"@@|TODO")
+#: A section that a program writes, and has not written.
+EMPTY = re.compile(r"<!-- begin ([\w-]+) -->\s*<!-- end \1 -->")
 
 
 def faults(document: Path) -> list[str]:
-    """Return the gaps of a document, and its links that lead nowhere."""
+    """Return the gaps of a document, its empty sections, and its links that lead nowhere."""
     text = document.read_text(encoding="utf-8")
     gaps = [f"line {i}: {line}" for i, line in enumerate(text.splitlines(), 1) if GAP.search(line)]
+    gaps += [f"section {match[1]} is empty" for match in EMPTY.finditer(text)]
     links = [link for link in LINK.findall(text) if not re.match(r"[a-z]+:", link)]
     return gaps + [link for link in links if not leads_somewhere(link, document)]
 
@@ -43,8 +46,11 @@ def test_what_is_left_open_is_found(tmp_path: Path) -> None:
         "# A heading: one, two\n\n@@SHARE@@ of them\n\n```sh\n# no heading\n```\n"
         "[a](#a-heading-one-two) [b](d.md#nowhere) [c](absent.md) [d](https://example.org/x)\n"
         "[e](#no-heading)\nTODO\n"
+        "<!-- begin full -->\n1 s\n<!-- end full -->\n"
+        "<!-- begin bare -->\n\n<!-- end bare -->\n<!-- begin a-b --><!-- end a-b -->\n"
     )
     assert faults(document) == [
         *("line 3: @@SHARE@@ of them", "line 10: TODO"),
+        *("section bare is empty", "section a-b is empty"),
         *("d.md#nowhere", "absent.md", "#no-heading"),
     ]

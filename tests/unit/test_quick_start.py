@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 from pathlib import Path
 
 import pagd
 from pagd.catalogue import design_from
+from pagd.cli import main
 from pagd.cli.parser import make_parser
 from pagd.simulation import simulate
 
@@ -55,8 +57,26 @@ def test_the_python_code_names_what_there_is() -> None:
     assert all(hasattr(pagd.Result, name) for name in re.findall(r"result\.(\w+)", code))
 
 
-def test_the_files_are_those_that_the_stages_leave() -> None:
-    from pagd.stages import metrics, solve
+def files_told() -> list[str]:
+    """The files of the table, as patterns within the folder of the run."""
+    rows = TEXT.partition("| in `my_design/` |")[2].partition("\n\n")[0].splitlines()[2:]
+    return [name for row in rows for name in re.findall(r"`([^`]+)`", row.split("|")[1])]
 
-    for name in (solve.STATES_NAME, metrics.PERFORMANCE_NAME, metrics.TRAJECTORY_NAME):
-        assert f"/{name}`" in TEXT
+
+def test_the_files_are_those_that_a_run_leaves(tmp_path: Path) -> None:
+    """The command as it is told, on a coarse mesh, and the folder that it leaves."""
+    (tmp_path / "my_design.yaml").write_text(blocks("yaml")[0])
+    (words,) = (each[1:] for each in commands() if each[:2] == ["pagd", "run"])
+    words[words.index("my_design.yaml")] = str(tmp_path / "my_design.yaml")
+    words[words.index("my_design")] = str(tmp_path / "my_design")
+    words[words.index("--pressure-kPa") + 1] = "4"
+    coarse = ["--block-mm", "12", "--config", json.dumps({"figures": {"resolution_dpi": 50}})]
+    assert main([*words, *coarse]) == 0
+    left = {path for path in (tmp_path / "my_design").rglob("*") if path.is_file()}
+    told = {name: set((tmp_path / "my_design").glob(name)) for name in files_told()}
+    assert [name for name, found in told.items() if not found] == []
+    # One record a stage; and no picture that the table leaves out.
+    assert {path.parent.name for path in told["*/record.json"]} == {
+        path.parent.name for path in left
+    }
+    assert {path for path in left if path.suffix == ".png"} <= set().union(*told.values())

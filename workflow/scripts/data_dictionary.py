@@ -2,7 +2,8 @@
 
     python workflow/scripts/data_dictionary.py
 
-The columns are those the files are written with (`pagd/tables`); a test keeps the page in step.
+The columns are those the files are written with (`pagd/tables`), the exports those that the page
+offers (`pagd/figures/page/downloads.py`); a test keeps docs/data.md in step.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from pagd.figures.page.downloads import DESCRIPTIONS
 from pagd.summary import FOR_PEOPLE
 from pagd.tables import (
     BLOCKED,
@@ -165,6 +167,7 @@ OTHER_FILES = (
     ("designs/*/geometry/*.stl", "surfaces of body and base; `_half` of a half model"),
     ("designs/*/repair/*.stl", "the same, closed and oriented"),
     ("designs/*/mesh/mesh.msh", "quadratic tetrahedra with named surfaces, gmsh 4.1"),
+    ("report/designs/*/", "a design for other programs, [file by file](#exports-of-a-design)"),
     ("verification/verification.json", "every row of `make verify`"),
     ("*/record.json", "[record](workflow.md#records) of a stage"),
 )
@@ -175,7 +178,8 @@ INTRODUCTION = """\
 Every file of `results/` that can be used elsewhere, and every column of every table. Pictures,
 the page and logs are listed in [results/README.md](../results/README.md).
 
-This page is made from `pagd/tables/` by `python workflow/scripts/data_dictionary.py`.
+This page is made by `python workflow/scripts/data_dictionary.py` from what the files are written
+with.
 
 Tables are Parquet files, which pandas, R, MATLAB, DuckDB and others read. Types are those of
 Arrow; the unit `1` is a pure number; a null says that there is no such figure. Unit and
@@ -192,6 +196,14 @@ x runs along the undeformed actuator from its fixed end, y across, z up, away fr
 Bending is positive towards the base, twist by the right-hand rule about x.
 
 ## Files
+"""
+
+EXPORTS_TEXT = """\
+`report/designs/*/`, and any folder that `pagd export` writes, has those of these files that can be
+made of the design; its `record.json` says what could not be, and why (`left_out`). A mesh of half
+of a design has a `last_state.vtu` of that half. The CSV files are tables of the design as they are,
+rows and columns: [trajectory](#trajectories), [performance](#performance-by-pressure),
+[free actuation](#steps-of-the-free-actuation) and [blocked force](#steps-with-a-held-tip).
 """
 
 FOR_PEOPLE_TEXT = """\
@@ -253,9 +265,15 @@ def for_people() -> str:
     return f"## For people\n\n{FOR_PEOPLE_TEXT}\n{lines((('heading', 'figure'), *named))}"
 
 
+def exports() -> str:
+    """Return the section of the files of a design for other programs."""
+    rows = ((f"`{name}`", meaning) for name, meaning in DESCRIPTIONS.items())
+    return f"## Exports of a design\n\n{EXPORTS_TEXT}\n{lines((('file', 'what it is'), *rows))}"
+
+
 def page() -> str:
     """Return the whole page."""
-    sections = "\n".join((*map(section, TABLES), for_people()))
+    sections = "\n".join((*map(section, TABLES), exports(), for_people()))
     return f"{INTRODUCTION}\n{files()}\n{sections}"
 
 
