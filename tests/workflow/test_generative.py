@@ -109,7 +109,7 @@ def test_pictures_and_page(generative: Project) -> None:
     for name in (*selected(generative), "Data set and embedding", "Novelty and diversity"):
         assert name in page
     # No pictures are drawn of single designs here, and yet each has a card.
-    assert not list(generative.glob("designs/*/figures"))
+    assert not list((generative / "designs").glob("*/figures"))
     for name in ("straight", *selected(generative)):
         assert (generative / f"report/designs/{name}/card.js").is_file()
         assert f'data-address="designs/{name}"' in page
