@@ -31,10 +31,25 @@ def bars(wanted: bool) -> Iterator[None]:
     from tqdm.contrib.logging import logging_redirect_tqdm
 
     # Neither a thread that watches the bars nor a semaphore: stages fork this process.
+    with _lone(tqdm), logging_redirect_tqdm(), shown_by(_display(os.getpid())):
+        yield
+
+
+@contextlib.contextmanager
+def _lone(tqdm: Any) -> Iterator[None]:
+    """Let tqdm do without its thread and its semaphore in the block; the caller may need both."""
+    # It has no lock before its first bar, and asking for one would make it, with a semaphore.
+    interval, lock = tqdm.monitor_interval, vars(tqdm).get("_lock")
     tqdm.monitor_interval = 0
     tqdm.set_lock(threading.RLock())
-    with logging_redirect_tqdm(), shown_by(_display(os.getpid())):
+    try:
         yield
+    finally:
+        tqdm.monitor_interval = interval
+        if lock is None:
+            del tqdm._lock
+        else:
+            tqdm.set_lock(lock)
 
 
 def _display(process: int) -> Display:
@@ -66,8 +81,9 @@ class _Bar:
         self._bar = bar
 
     def reach(self, value: float) -> None:
-        # Pressure may fall, on a branch behind a limit point: so does the bar.
-        self._bar.update(value - self._bar.n)
+        # Pressure may fall, on a branch behind a limit point: so does the bar. A last step may go
+        # beyond the whole.
+        self._bar.update(min(value, self._bar.total) - self._bar.n)
 
     def name(self, part: str) -> None:
         self._bar.set_description_str(part)

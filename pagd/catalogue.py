@@ -22,6 +22,8 @@ from pagd.validation import check, check_by, check_each
 __all__ = ["NamedDesign", "design_from", "design_of", "name_from", "read_designs", "read_pneunets"]
 
 
+# Files of a single design.
+_DOCUMENTS = (".yaml", ".yml", ".json")
 # A tenth of the smallest side of the sampling box, and more than the largest one is in metres.
 _SMALLEST_SIDE_MM = 0.5
 # The same of families: so small a share of what their sampling boxes begin with.
@@ -152,6 +154,8 @@ def read_pneunets(tables: Mapping[str, str], *, checked: bool = True) -> dict[st
 
 def _rows(path: Path, origin: str) -> list[tuple[str, dict[str, Any]]]:
     """Return the rows of a table, each with the place where it stands."""
+    if path.suffix.lower() in _DOCUMENTS:
+        raise InputError(f"table of designs {path}: must be a table, CSV or Parquet, of designs.")
     if path.suffix == ".parquet":
         first, rows = 1, _rows_of_parquet(path)
     else:

@@ -1,7 +1,8 @@
 """How far long work has come, told to whoever has asked for it; to nobody, unless someone has.
 
-The library counts, and knows nothing of terminals: the command line shows bars, the workflow and a
-program that calls the library see none.
+The library counts, and knows nothing of terminals: the command line shows bars, and so does
+:func:`pagd.simulate` in a notebook or an interactive session; the workflow and a program that calls
+the library see none, unless it asks for them.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ from pagd.result import Result, read_result
 from pagd.stages import chain
 from pagd.stages.solve import materials_of
 
-__all__ = ["bar", "simulate"]
+__all__ = ["simulate"]
 
 
 def simulate(
@@ -36,6 +36,7 @@ def simulate(
     config: Mapping[str, Any] | str | Path | None = None,
     threads: int = 1,
     name: str | None = None,
+    progress: bool | None = None,
 ) -> Result:
     """Build, mesh and solve a design, and measure what it does.
 
@@ -58,6 +59,10 @@ def simulate(
         Threads of kernels and linear solver.
     name
         Name of the design; its own, or that of ``out``, unless given.
+    progress
+        Show bars of how far it is: under the cell of a notebook, elsewhere on stderr. Unless given,
+        they are shown in a notebook, and at a terminal in an interactive session of Python; a
+        program shows none.
 
     Returns
     -------
@@ -78,7 +83,7 @@ def simulate(
     if threads < 1:
         raise InputError(f"threads = {threads} must be at least 1.")
     folder = wanted or Path(tempfile.mkdtemp(dir=_scratch().name)) / named.name
-    with _display():
+    with _display(progress):
         chain.run(
             named,
             folder,
@@ -144,6 +149,15 @@ def _scratch() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory(prefix="pagd-")
 
 
-def _display() -> AbstractContextManager[None]:
-    """What shows whoever looks on how far it is: bars in a notebook or a terminal."""
-    return shown_by(bar) if is_notebook() else bars(sys.stderr.isatty())
+def _display(wanted: bool | None) -> AbstractContextManager[None]:
+    """What shows whoever looks on how far it is, where that is wanted; None: where one looks on."""
+    if wanted is False:
+        return shown_by(None)
+    if is_notebook():
+        return shown_by(bar)
+    return bars(bool(wanted) or (_is_interactive() and sys.stderr.isatty()))
+
+
+def _is_interactive() -> bool:
+    """Whether a person types at this Python, and runs no program."""
+    return hasattr(sys, "ps1") or bool(sys.flags.interactive)

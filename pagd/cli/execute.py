@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 import sys
 import traceback
+from argparse import Namespace
 from collections.abc import Sequence
 
 from pagd.bars import bars
@@ -38,10 +40,16 @@ def execute(arguments: Sequence[str], *, at_terminal: bool = False) -> int:
     if not arguments:
         make_parser().print_help(sys.stderr)
         return BAD_INPUT
-    as_json = "--json" in arguments
     try:
-        with only_answer_on_stdout(as_json):
-            answer = _answered(arguments, at_terminal)
+        try:
+            # Help goes to stdout, whatever else is asked for.
+            options = make_parser().parse_args(arguments)
+        except InputError as error:
+            as_json, answer = _asks_for_json(arguments), _complain(error, BAD_INPUT)
+        else:
+            as_json = vars(options).get("json", False)
+            with only_answer_on_stdout(as_json):
+                answer = _answered(options, at_terminal)
         if as_json:
             print(json_text(answer.document), flush=True)
     except BrokenPipeError:
@@ -51,10 +59,15 @@ def execute(arguments: Sequence[str], *, at_terminal: bool = False) -> int:
     return answer.code
 
 
-def _answered(arguments: Sequence[str], at_terminal: bool) -> Answer:
+def _asks_for_json(arguments: Sequence[str]) -> bool:
+    """Whether words that could not be parsed ask for a document all the same."""
+    # Behind "--" there are no options.
+    return "--json" in itertools.takewhile(lambda word: word != "--", arguments)
+
+
+def _answered(options: Namespace, at_terminal: bool) -> Answer:
     """Call the subcommand; what it raises is an answer too."""
     try:
-        options = make_parser().parse_args(arguments)
         start_log(options.verbose)
         with under(limits_of(options)), bars(at_terminal):
             answer: Answer = options.handler(options)

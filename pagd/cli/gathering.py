@@ -62,17 +62,37 @@ def view(options: Namespace) -> Answer:
 
 def _write_page(folders: Sequence[Path], page: Path) -> int:
     """Write the page of the designs that have results, and their cards; how many they are."""
-    shown = _with_results(folders)
-    from pagd.config import load
+    found = _with_results(folders)
+    from pagd.figures.groups import refuse_equal_names
     from pagd.figures.page import cards_beside, write_page
+
+    whole = [folder.resolve() for folder in found]  # "." has no name
+    refuse_equal_names(found, [folder.name for folder in whole])
+    cards = cards_beside(page)
+    shown = _with_cards(whole, cards)
+    write_page(shown, page, cards=cards)
+    return len(shown)
+
+
+def _with_cards(folders: Sequence[Path], cards: Path) -> list[Path]:
+    """Export the designs, but for those that are as they were; those that have a card then."""
+    from pagd.config import load
+    from pagd.figures.page.cards import CARD_NAME
     from pagd.stages import export as stage
 
-    cards, config = cards_beside(page), load(None)
-    whole = [folder.resolve() for folder in shown]  # "." has no name
-    for folder in counted(whole, "cards", len(whole), "designs"):
-        stage.run(folder, cards / folder.name, config)
-    write_page(whole, page, cards=cards)
-    return len(whole)
+    config, shown, reasons = load(None), [], []
+    for folder in counted(folders, "cards", len(folders), "designs"):
+        out = cards / folder.name
+        record = stage.kept(folder, out, config) or stage.run(folder, out, config)
+        reason = record.figures["left_out"].get(CARD_NAME)
+        if reason is None:
+            shown.append(folder)
+        else:
+            log.warning("%s is not on the page: %s", folder, reason)
+            reasons.append(reason)
+    if not shown:
+        raise InputError(reasons[0])
+    return shown
 
 
 def _designs_of_workflow() -> list[Path]:
@@ -87,7 +107,17 @@ def _with_results(folders: Sequence[Path]) -> list[Path]:
     for folder in folders:
         if not folder.is_dir():
             raise InputError(f"{folder}: there is no such folder.")
-    found = [folder for folder in folders if _has_results(folder)]
+    from pagd.figures.load import load_records
+
+    found, errors = [], []
+    for folder in folders:
+        try:
+            found += [folder] if load_records(folder) else []
+        except InputError as error:
+            log.warning("%s is not on the page: %s", folder, error)
+            errors.append(error)
+    if not found and errors:
+        raise errors[0]
     if not found:
         where = folders[0] if folders else _OF_WORKFLOW
         raise InputError(
@@ -98,7 +128,3 @@ def _with_results(folders: Sequence[Path]) -> list[Path]:
         # As in a run under way: designs that have been begun, but have no stage yet.
         log.info("%d of %d designs have results", len(found), len(folders))
     return found
-
-
-def _has_results(folder: Path) -> bool:
-    return any(folder.glob(f"*/{RECORD_NAME}"))

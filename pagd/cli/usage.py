@@ -23,6 +23,10 @@ class Parser(argparse.ArgumentParser):
 
     headings: Mapping[str, Sequence[str]] = {}
 
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        # An option that is cut short would mean another one as soon as there is a new one.
+        super().__init__(*args, **{"allow_abbrev": False, **kwargs})
+
     def error(self, message: str) -> Any:
         """Refuse a command line, with the nearest name where a subcommand is misspelt."""
         for action in self._subcommands():
@@ -41,6 +45,8 @@ class Parser(argparse.ArgumentParser):
     def refuse(self, unknown: Sequence[str]) -> None:
         """Refuse words that the parser does not know, the first of them by name."""
         word = unknown[0].partition("=")[0]
+        if word in self._option_string_actions:
+            raise InputError(f"{word} must come after the subcommand: {self.prog} … {word}.")
         near = difflib.get_close_matches(word, self._option_string_actions, n=1)
         hint = f"did you mean {near[0]}?" if near else f"see {self.prog} --help"
         kind = "an option" if word.startswith("-") else "an argument"

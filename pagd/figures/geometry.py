@@ -13,11 +13,11 @@ from pagd.errors import InputError
 from pagd.families import Actuator, PneuNet, actuator_of
 from pagd.figures.details import draw_details
 from pagd.figures.load import load_design, stl_paths
-from pagd.figures.outline import draw_section
 from pagd.figures.overall import draw_overall
 from pagd.figures.scene import Camera, Image, Sheet, Wire, render
 from pagd.figures.style import BASE, CAVITY, CUT, ELASTOMER, PAPER, new_figure, save
 from pagd.figures.surface import sharp_edges
+from pagd.figures.views import draw_plan, draw_side
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,25 +68,13 @@ def geometry_figure(
     space.imshow(_cut_open(body, base))
     space.set_axis_off()
     space.set_title(f"{title}: cut open along the middle; paper between body and base")
-    draw_section(plan, body, base, 2, _level(body, design))
-    plan.set_title(_title_of_plan(design))
-    draw_section(side, body, base, 1, 0.0)
-    known = design is None or isinstance(design, PneuNet)
-    side.set_title("side view, through the air channel" if known else "side view, in the middle")
-    side.set_xlabel("x, mm")
+    draw_plan(plan, body, base, design)
+    draw_side(side, body, base, design)
     if isinstance(design, PneuNet):
         draw_details(figure, rows[3], body, base, design.design)
     elif design:
         draw_overall(figure, rows[3], body, base, design)
     return figure
-
-
-def _title_of_plan(design: Actuator | None) -> str:
-    if design and not isinstance(design, PneuNet):
-        return "plan, half-way up the body"
-    slanted = isinstance(design, PneuNet) and not design.is_symmetric
-    slant = f", θ = {design.as_dict()['theta']:g}°" if design and slanted else ""
-    return "plan, through the chambers" + slant
 
 
 def _surface(path: Path) -> pv.PolyData:
@@ -147,10 +135,3 @@ def _with_edges(surface: pv.PolyData, colour: str) -> list[Sheet | Wire]:
         Sheet(points=points, triangles=faces, colour=colour, smooth=False),
         Wire(points=points, edges=sharp_edges(points, faces), width=1.2, opacity=0.8),
     ]
-
-
-def _level(body: pv.PolyData, design: Actuator | None) -> float:
-    """Return a height z (mm) at which the plan is cut: near the roof of a pneu-net's cavities."""
-    if isinstance(design, PneuNet):
-        return 0.85 * (design.design.H - design.design.t_h)
-    return 0.5 * (body.bounds[4] + body.bounds[5])

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from pagd.errors import Status
+from pagd.errors import InputError, Status
 from pagd.figures.load import load_records
 from pagd.figures.style import MODE_LOOKS, design_colours
 from pagd.record import Record
 
-__all__ = ["FEW", "Entry", "Line", "by_mode", "line_looks", "read_entries"]
+__all__ = ["FEW", "Entry", "Line", "by_mode", "line_looks", "read_entries", "refuse_equal_names"]
 
 #: Up to so many designs share a panel; more are parted by mode.
 FEW: Final = 4
@@ -89,6 +89,31 @@ def read_entries(folders: Iterable[Path]) -> list[Entry]:
         records = list(load_records(folder).values())
         found.append(Entry(folder, records[-1] if records else None))
     return found
+
+
+def refuse_equal_names(folders: Iterable[Path], names: Iterable[str]) -> None:
+    """Refuse designs of one page that have the same name: one's card would replace the other's.
+
+    Parameters
+    ----------
+    folders
+        Folders of the designs, as whoever reads the message calls them.
+    names
+        Names of the designs, in their order.
+
+    Raises
+    ------
+    InputError
+        Naming the first two.
+    """
+    found: dict[str, Path] = {}
+    for folder, name in zip(folders, names, strict=True):
+        if name in found:
+            raise InputError(
+                f"{found[name]} and {folder} have the same name: each design of a page needs its "
+                "own."
+            )
+        found[name] = folder
 
 
 def by_mode(entries: Sequence[Entry]) -> dict[str, list[Entry]]:

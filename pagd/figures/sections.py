@@ -15,9 +15,9 @@ from matplotlib import rc_context
 from pagd.design import Design
 from pagd.families import Actuator, PneuNet, actuator_of
 from pagd.figures.details import draw_details
-from pagd.figures.outline import draw_section
 from pagd.figures.overall import draw_overall
 from pagd.figures.style import new_figure
+from pagd.figures.views import draw_plan, draw_side
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,8 +27,6 @@ __all__ = ["sections_as_svg", "sections_figure"]
 _WIDTH = 10.0
 # Largest side view and plan, inches; height of the details, and of a title with its axis.
 _HIGHEST, _DETAILS, _HEAD = 1.8, 3.0, 0.65
-# The plan is cut near the roof of the cavities, above the channel.
-_LEVEL = 0.85
 # With a salt of its own matplotlib names equal things equally; by default it draws lots.
 _SETTINGS: Final[dict[Any, Any]] = {"svg.hashsalt": "pagd", "svg.fonttype": "none"}
 
@@ -64,20 +62,12 @@ def sections_figure(body: pv.PolyData, base: pv.PolyData, of: Design | Actuator)
     figure = new_figure(_WIDTH, sum(heights))
     rows = figure.add_gridspec(3, 1, height_ratios=heights)
     plan, side = (figure.add_subplot(rows[i]) for i in range(2))
+    draw_plan(plan, body, base, design, f"; {_in_words(design)}")
+    draw_side(side, body, base, design, "; paper between body and base")
     if isinstance(design, PneuNet):
-        one = design.design
-        draw_section(plan, body, base, 2, _LEVEL * (one.H - one.t_h))
-        slant = "" if one.is_straight else f", θ = {one.theta:g}°"
-        plan.set_title(f"plan, through the chambers{slant}; {one.mode}, {one.N} chambers")
-        side.set_title("side view, through the air channel; paper between body and base")
-        draw_details(figure, rows[2], body, base, one)
+        draw_details(figure, rows[2], body, base, design.design)
     else:
-        draw_section(plan, body, base, 2, 0.5 * (body.bounds[4] + body.bounds[5]))
-        plan.set_title(f"plan, half-way up the body; {_in_words(design)}")
-        side.set_title("side view, in the middle; paper between body and base")
         draw_overall(figure, rows[2], body, base, design)
-    draw_section(side, body, base, 1, 0.0)
-    side.set_xlabel("x, mm")
     return figure
 
 

@@ -9,21 +9,25 @@ from typing import Any
 
 from pagd.errors import InputError, StageFailure
 from pagd.export import write_csv, write_step
-from pagd.figures.load import load_records, stl_paths
-from pagd.figures.page.cards import write_card
+from pagd.figures.load import STAGES, load_records, stl_paths
+from pagd.figures.page.cards import CARD_NAME, write_card
 from pagd.geometry import openscad_version, parts_of_model, render_model
+from pagd.inventory import damages, sha256_of
 from pagd.mesh.msh import read_msh
 from pagd.mesh.surfaces import read_stl
-from pagd.record import Meter, Record
+from pagd.record import RECORD_NAME, Meter, Record, read_record, versions
+from pagd.stages import STAGE_VERSIONS
 from pagd.stages.mesh import MESH_NAME
 from pagd.stages.metrics import PERFORMANCE_NAME, TRAJECTORY_NAME
 from pagd.stages.solve import BLOCKED_NAME, HISTORY_NAME, STATES_NAME
 from pagd.stages.stage import Outcome, run_stage
 from pagd.states import read_states
 
-__all__ = ["run"]
+__all__ = ["kept", "run"]
 
 _MODEL = "design.scad"
+# How parts of a model begin that are not rendered before, and files that need OpenSCAD.
+_MOULD = "mould_"
 #: Tables as CSV: name of the file to stage and table.
 _TABLES = {
     "trajectory.csv": ("metrics", TRAJECTORY_NAME),
@@ -40,7 +44,8 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     """Write a design's surfaces, solids, moulds, last state and tables, and card.js for the page.
 
     A design that failed has fewer files. What one of them could not be made for is among the
-    figures, ``left_out``; the others are there.
+    figures, ``left_out``, with the reason: no solid, a table that cannot be read, moulds where
+    OpenSCAD is missing. The others are there.
 
     Parameters
     ----------
@@ -60,30 +65,79 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     if not upstream:
         raise InputError(f"{design}: holds no folder of a stage with a record.json.")
 
+    files = _files(design, config["geometry"]["time_limit_s"])
+
     def work(folder: Path, outcome: Outcome, meter: Meter) -> None:
-        left_out = {}
-        for name, write in _files(design, config["geometry"]["time_limit_s"]).items():
-            try:
-                with meter.part(name):
-                    write(folder / name)
-            except StageFailure as failure:
-                left_out[name] = failure.reason
+        left_out: dict[str, str] = {}
+        for name, write in files.items():
+            with meter.part(name):
+                _attempt(write, folder / name, left_out)
         outcome.figures |= {
             "files": sorted(path.name for path in folder.iterdir()),
             "left_out": left_out,
         }
-        write_card(design, folder)
+        _attempt(lambda path: write_card(design, path.parent), folder / CARD_NAME, left_out)
 
     return run_stage(
         "export",
         out,
         work,
         design_id=upstream[-1].design_id,
-        configuration={"geometry": config["geometry"]},
+        configuration=_made_of(design, config),
         upstream=upstream,
         goes_on=True,
-        libraries={"openscad": openscad_version()},
+        libraries=_programs(files),
     )
+
+
+def kept(design: Path, out: Path, config: Mapping[str, Any]) -> Record | None:
+    """Return the record of an export that :func:`run` would only repeat; None if there is none.
+
+    It was made of the same records by the same versions, left nothing out, and has all its files as
+    they were made. The parameters are those of :func:`run`.
+    """
+    if not (out / RECORD_NAME).is_file():
+        return None
+    try:
+        record = read_record(out)
+    except InputError:
+        return None
+    if record.stage != "export" or record.configuration != _made_of(design, config):
+        return None
+    now = versions(STAGE_VERSIONS["export"], _programs(_files(design, 0.0)))
+    # OpenSCAD may have gone since: what it has made is as good as it was.
+    same = all(record.versions.get(key) == one for key, one in now.items() if one is not None)
+    sound = not any(damages(out, record, thorough=True))
+    return record if same and sound and not record.figures["left_out"] else None
+
+
+def _made_of(design: Path, config: Mapping[str, Any]) -> dict[str, Any]:
+    """What an export is made of: the configuration, and the records before it by their SHA-256.
+
+    A card shows records as they are, and pictures: so a record counts with its times, and that of
+    the pictures too.
+    """
+    records = {stage: design / stage / RECORD_NAME for stage in (*STAGES, "figures")}
+    digests = {stage: sha256_of(path) for stage, path in records.items() if path.is_file()}
+    return {"geometry": config["geometry"], "upstream_sha256": digests}
+
+
+def _attempt(write: Write, path: Path, left_out: dict[str, str]) -> None:
+    """Write a file; why it cannot be written joins what is left out."""
+    try:
+        write(path)
+    except (InputError, StageFailure) as error:
+        left_out[path.name] = str(error)
+
+
+def _programs(files: Mapping[str, Write]) -> dict[str, str | None]:
+    """Return the version of OpenSCAD where files need it; None where it is missing."""
+    if not any(name.startswith(_MOULD) for name in files):
+        return {}
+    try:
+        return {"openscad": openscad_version()}
+    except InputError:
+        return {"openscad": None}
 
 
 def _files(design: Path, time_limit: float) -> dict[str, Write]:
@@ -96,7 +150,7 @@ def _files(design: Path, time_limit: float) -> dict[str, Write]:
     if model.is_file():
         found[_MODEL] = _copy_of(model)
         if pair is not None:
-            moulds = (part for part in parts_of_model(model) if part.startswith("mould_"))
+            moulds = (part for part in parts_of_model(model) if part.startswith(_MOULD))
             found |= {f"{part}.stl": _part_of(model, part, time_limit) for part in moulds}
     if all((design / name).is_file() for name in (f"mesh/{MESH_NAME}", f"solve/{STATES_NAME}")):
         found["last_state.vtu"] = lambda path: _write_last_state(design, path)

@@ -168,3 +168,31 @@ def test_steps_of_a_solve_are_logged_only_where_no_bar_shows_them(
         assert steps_of_solve() is None
     # As a library, nothing is shown unless it is asked for.
     assert execute(["design", "show", json.dumps(THIN)]) == 0
+
+
+def test_bars_leave_tqdm_as_it_was(capfd: pytest.CaptureFixture[str]) -> None:
+    """A program that has bars of its own goes on with them."""
+    from tqdm import tqdm
+
+    interval, lock = tqdm.monitor_interval, tqdm.get_lock()
+    with contextlib.suppress(KeyError), bars(True):
+        assert tqdm.monitor_interval == 0
+        raise KeyError
+    assert tqdm.monitor_interval == interval != 0
+    assert tqdm.get_lock() is lock
+    del tqdm._lock
+    try:
+        with bars(True):
+            list(counted("ab", "spelling", 2, "letters"))
+        assert "_lock" not in vars(tqdm)
+    finally:
+        tqdm.set_lock(lock)
+
+
+def test_a_bar_ends_at_the_whole(capfd: pytest.CaptureFixture[str]) -> None:
+    with bars(True), long_work("spelling", 2.0, "letters") as shown:
+        shown.reach(3.0)
+        shown.name("done")
+    told = capfd.readouterr().err
+    assert "2 of 2 letters" in told
+    assert "3 of 2" not in told

@@ -165,3 +165,25 @@ def test_whoever_has_read_enough_may_go(tmp_path: Path) -> None:
         told = process.stderr.read().decode()
     assert process.returncode == 1
     assert "Traceback" not in told
+
+
+@pytest.mark.parametrize("words", [["--json", "--help"], ["-h", "--json"], ["--json", "-vh"]])
+def test_help_is_on_stdout_all_the_same(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["status", *words])
+    assert end.value.code == 0
+    told = capsys.readouterr()
+    assert told.out.startswith("usage: pagd status")
+    assert told.err == ""
+
+
+def test_a_folder_of_that_name_asks_for_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["view", "--", "--json"]) == 2
+    assert capsys.readouterr() == ("", "pagd: --json: there is no such folder.\n")
+    assert main(["view", "--worse", "--", "--json"]) == 2
+    assert capsys.readouterr().out == ""

@@ -91,6 +91,15 @@ def test_pagd_alone_prints_its_help(capsys: pytest.CaptureFixture[str]) -> None:
             ["run", "a", "b", "--out", "c"],
             "b is not an argument of pagd run (see pagd run --help).",
         ),
+        (["--json", "status"], "--json must come after the subcommand: pagd status … --json."),
+        (
+            ["design", "--json", "show", "a"],
+            "--json must come after the subcommand: pagd design show … --json.",
+        ),
+        (
+            ["status", "--js"],
+            "--js is not an option of pagd status (did you mean --json?).",
+        ),
         (["run", "a"], "the following arguments are required: --out (see pagd run --help)."),
         (
             ["generate", "--mode", "bent", "--out", "a"],
@@ -147,3 +156,15 @@ def test_examples_of_the_documents_are_commands(line: str) -> None:
         return
     options = make_parser().parse_args(words)
     assert callable(options.handler)
+
+
+@pytest.mark.parametrize("name", ["one.yaml", "one.yml", "one.json"])
+def test_screen_wants_a_table(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / name).write_text(THIN)
+    assert main(["screen", str(tmp_path / name), "--out", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert told == (
+        f"pagd: table of designs {tmp_path / name}: must be a table, CSV or Parquet, of designs.\n"
+    )

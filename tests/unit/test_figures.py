@@ -48,6 +48,7 @@ from pagd.figures.paths_by_mode import (
     trajectories_by_mode,
 )
 from pagd.figures.scene import Camera, Sheet, render
+from pagd.figures.sections import sections_figure
 from pagd.figures.style import kilopascals, number
 from pagd.figures.surface import cut_faces, sharp_edges, skin_of, split_faces
 from pagd.figures.trajectories import draw_trajectories, load_all, trajectories_figure
@@ -267,6 +268,34 @@ def test_few_chambers_have_the_dimensions_that_there_are(count, alpha, expected,
     assert absent not in found
     # A short body does not make a long picture.
     assert figure.get_figheight() < 1.5 * figure.get_figwidth()
+
+
+def test_surfaces_of_ones_own_are_not_said_to_have_chambers():
+    body, base = hollow_body(), pv.Box((0.0, 30.0, -5.0, 5.0, -1.0, 0.0)).triangulate()
+    found = labels(geometry_figure("own", body, base, None))
+    assert {"plan, half-way up the body", "side view, in the middle"} <= set(found)
+
+
+def test_both_pictures_of_a_design_show_the_same_plan():
+    design = Design(
+        L=13.0, W=10.0, H=7.0, t=2.0, t_n=4.0, t_h=2.0, t_ab=2.0, t_b=2.0, N=2, theta=20, alpha=1
+    )  # fmt: skip
+    # Narrower towards its top, so that the width of a plan tells where it is cut.
+    body = pv.Cone(
+        center=(15.0, 0.0, 3.5), direction=(0, 0, 1), height=7.0, radius=10.0, resolution=64
+    ).triangulate()
+    base = pv.Box((0.0, 30.0, -5.0, 5.0, -1.0, 0.0)).triangulate()
+    one, other = geometry_figure("a", body, base, design), sections_figure(body, base, design)
+    plans = [
+        next(axes for axes in figure.axes if axes.get_title("left").startswith("plan"))
+        for figure in (one, other)
+    ]
+    titles = [plan.get_title("left") for plan in plans]
+    assert titles[0] == "plan, through the chambers, θ = 20°"
+    assert titles[1] == f"{titles[0]}; twisting design, 2 chambers"
+    widths = [np.ptp(plan.patches[0].get_path().vertices[:, 0]) for plan in plans]
+    # At 0.85 (H − t_h) = 4.25 mm of 7 mm.
+    np.testing.assert_allclose(widths, 2 * 10.0 * (1 - 4.25 / 7.0), rtol=1e-2)
 
 
 @pytest.mark.parametrize("chambers", [1, 2])

@@ -136,16 +136,31 @@ class Terminal(io.StringIO):
         return True
 
 
+@pytest.mark.parametrize(("interactive", "progress"), [(True, None), (False, True)])
 def test_a_terminal_has_bars_that_go_at_the_end(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    interactive: bool, progress: bool | None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("COLUMNS", "80")
-    pagd.simulate({**SMALL.as_dict(), "t_h": 20}, tmp_path / "too_thick")
+    if interactive:
+        monkeypatch.setattr(sys, "ps1", ">>> ", raising=False)
+    pagd.simulate({**SMALL.as_dict(), "t_h": 20}, tmp_path / "too_thick", progress=progress)
     states = terminal.getvalue().split("\r")
     assert any("of 6 stages" in state for state in states)
     assert not "".join(states[-2:]).strip()
+
+
+@pytest.mark.parametrize(("interactive", "progress"), [(False, None), (True, False)])
+def test_a_program_shows_none_even_at_a_terminal(
+    interactive: bool, progress: bool | None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    if interactive:
+        monkeypatch.setattr(sys, "ps1", ">>> ", raising=False)
+    pagd.simulate({**SMALL.as_dict(), "t_h": 20}, tmp_path / "too_thick", progress=progress)
+    assert terminal.getvalue() == ""
 
 
 _SCRIPT = """

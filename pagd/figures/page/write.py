@@ -11,7 +11,14 @@ from urllib.parse import quote
 
 from pagd.figures.captions import TOGETHER
 from pagd.figures.curves import steps_data
-from pagd.figures.groups import FEW, Entry, by_mode, line_looks, read_entries
+from pagd.figures.groups import (
+    FEW,
+    Entry,
+    by_mode,
+    line_looks,
+    read_entries,
+    refuse_equal_names,
+)
 from pagd.figures.load import (
     has_blocked_force,
     has_trajectory,
@@ -84,10 +91,11 @@ def write_page(
     Raises
     ------
     InputError
-        If a file of the study is there and cannot be read.
+        If two designs have the same name, or a file of the study is there and cannot be read.
     """
     study = study or Study()
     entries = read_entries(design_folders)
+    refuse_equal_names(design_folders, [entry.name for entry in entries])
     rows = rows_of(entries, performance_of(study))
     cards = cards or _cards_beside(entries, out)
     addresses = {entry.name: _address(cards / entry.name, out) for entry in entries}
