@@ -3,8 +3,9 @@
     python benchmarks/opening.py results [--designs 1000] [--page docs/report.md]
 
 The simulated designs of a run are repeated, by links, until there are enough; all else of the page
-is that of the run. Chromium opens it from the disk, without a network and without a graphics card,
---times times. The page with one of the designs is the peer: what is the same for all takes as long.
+is that of the run, without and with the designs that it has analysed by a chamber each. Chromium
+opens it from the disk, without a network and without a graphics card, --times times. The page with
+one of the designs is the peer: what is the same for all takes as long.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from performance.page import must_have_section, publish, table
 from pagd.errors import InputError
 from pagd.figures.load import has_trajectory
 from pagd.figures.page import Study, write_page
+from pagd.tables import read_rows
 
 _SECTION = "opening"
 _FLAGS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
@@ -40,11 +42,10 @@ _PLACES = {
     "comparison": "diversity",
     "pictures": "figures/generative",
     "simulated": "figures/simulated",
-    "screened": "screening/generated",
-    "screened_training": "screening/training",
     "fronts": "summary/fronts.json",
     "screening_pictures": "figures/screening",
 }
+_SCREENED = {"screened": "screening/generated", "screened_training": "screening/training"}
 _LOADED_MS = "performance.timing.loadEventEnd - performance.timing.navigationStart"
 
 
@@ -59,9 +60,10 @@ def repeated(results: Path, count: int, folder: Path) -> list[Path]:
     return links
 
 
-def written(designs: Sequence[Path], page: Path, results: Path) -> float:
+def written(designs: Sequence[Path], page: Path, results: Path, *, screened: bool) -> float:
     """Write the page, without its cards, which are read when they are opened; its size in MB."""
-    study = Study(**{name: results / place for name, place in _PLACES.items()})
+    places = _PLACES | (_SCREENED if screened else {})
+    study = Study(**{name: results / place for name, place in places.items()})
     cards = page.parent / "cards"
     write_page(designs, page, results / "figures" / "together", study, cards=cards)
     return page.stat().st_size / 1e6
@@ -84,18 +86,26 @@ def opened_s(page: Path, times: int) -> list[float]:
     return found
 
 
-def measured(results: Path, counts: Sequence[int], times: int) -> str:
+def by_a_chamber(results: Path) -> int:
+    """Return how many designs of a run were analysed by a chamber each."""
+    tables = (results / place / "performance.parquet" for place in _SCREENED.values())
+    return sum(len(read_rows(table)) for table in tables if table.is_file())
+
+
+def measured(results: Path, count: int, times: int) -> str:
     """Return a table: designs, size of the page, seconds until it is loaded."""
-    rows = []
-    for count in counts:
+    rows, cells = [], by_a_chamber(results)
+    for designs, screened in [(1, False), (count, False), *([(count, True)] if cells else [])]:
         with tempfile.TemporaryDirectory(prefix="pagd-") as name:
             folder = Path(name)
             page = folder / "index.html"
-            size = written(repeated(results, count, folder), page, results)
+            links = repeated(results, designs, folder)
+            size = written(links, page, results, screened=screened)
             seconds = np.array(opened_s(page, times))
         told = [f"{np.median(seconds):.2f}", f"{seconds.min():.2f}", f"{seconds.max():.2f}"]
-        rows.append([f"{count:,}", f"{size:.1f}", *told])
-    return table(["designs", "page, MB", "loaded after s, median", "least", "most"], rows)
+        rows.append([f"{designs:,}", f"{cells if screened else 0:,}", f"{size:.1f}", *told])
+    headings = ["designs", "by a chamber", "page, MB", "loaded after s, median", "least", "most"]
+    return table(headings, rows)
 
 
 def main() -> int:
@@ -108,7 +118,7 @@ def main() -> int:
     options = parser.parse_args()
     try:
         must_have_section(options.page, _SECTION)
-        text = measured(options.results, [1, options.designs], options.times)
+        text = measured(options.results, options.designs, options.times)
     except (InputError, OSError) as error:
         parser.error(str(error))
     command = f"python benchmarks/opening.py {options.results}"

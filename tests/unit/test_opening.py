@@ -26,10 +26,11 @@ def test_a_page_of_many_designs_is_opened(tmp_path: Path) -> None:
     assert found.returncode == 0, found.stderr
     rows = [line.strip("| ").split(" | ") for line in found.stdout.splitlines()[-2:]]
     assert [row[0] for row in rows] == ["1", "300"]
-    sizes = [float(row[1]) for row in rows]
+    assert {row[1] for row in rows} == {"0"}
+    sizes = [float(row[2]) for row in rows]
     assert 1.0 < sizes[0] < sizes[1]
     for row in rows:
-        median, least, most = map(float, row[2:])
+        median, least, most = map(float, row[3:])
         assert 0.0 < least <= median <= most < 20.0
 
 
