@@ -162,7 +162,7 @@ def test_a_program_shows_none_even_at_a_terminal(
     pagd.simulate({**SMALL.as_dict(), "t_h": 20}, tmp_path / "too_thick", progress=progress)
     # Not even a character of one; what a log of others says there is no matter of it.
     assert "\r" not in terminal.getvalue()
-    assert "stages" not in terminal.getvalue()
+    assert "of 6 stages" not in terminal.getvalue()
 
 
 _SCRIPT = """
