@@ -6,8 +6,9 @@ A family is a class of :class:`Actuator`, found by its name (:data:`FAMILIES`) o
 
 from pagd.design import Design
 from pagd.families.interface import Actuator, Derived, Volumes
+from pagd.families.names import FAMILIES, PNEUNET, name_of
 from pagd.families.pneunet import PneuNet
-from pagd.families.registry import FAMILIES, PNEUNET, family_named, name_of
+from pagd.families.registry import family_named
 from pagd.families.tabled import TabledActuator
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from pagd.design import GeometryRules, Mode, Parameter, Violation
 from pagd.design.rules import refuse
 from pagd.errors import StageFailure, Status
-from pagd.families.registry import name_of
+from pagd.families.names import name_of
 
 if TYPE_CHECKING:
     from typing import Any, Self

@@ -1,26 +1,16 @@
-"""The families of actuators by name."""
+"""Families of actuators by their names."""
 
 from __future__ import annotations
 
 from importlib import import_module
 from inspect import isabstract
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from pagd.errors import InputError
+from pagd.families.interface import Actuator
+from pagd.families.names import FAMILIES
 
-if TYPE_CHECKING:
-    from pagd.families.interface import Actuator
-
-__all__ = ["FAMILIES", "PNEUNET", "family_named", "name_of"]
-
-#: The family of a design that names none.
-PNEUNET = "pneunet"
-
-#: Families by name, as module:class, so that only the one that is used is imported.
-FAMILIES = {
-    PNEUNET: "pagd.families.pneunet:PneuNet",
-    "half_bellows": "pagd.families.half_bellows:HalfBellows",
-}
+__all__ = ["family_named"]
 
 
 def family_named(name: object) -> type[Actuator]:
@@ -31,8 +21,6 @@ def family_named(name: object) -> type[Actuator]:
     InputError
         If there is none of that name.
     """
-    from pagd.families.interface import Actuator
-
     try:
         module, _, attribute = FAMILIES.get(cast(str, name), cast(str, name)).partition(":")
         found = getattr(import_module(module), attribute)
@@ -44,12 +32,6 @@ def family_named(name: object) -> type[Actuator]:
         lacking = ", ".join(sorted(found.__abstractmethods__))
         raise InputError(f"{_told(name)} (it lacks {lacking}).")
     return found
-
-
-def name_of(family: type[Actuator]) -> str:
-    """Return the name by which :func:`family_named` finds a family."""
-    home = f"{family.__module__}:{family.__qualname__}"
-    return next((name for name, place in FAMILIES.items() if place == home), home)
 
 
 def _told(name: object) -> str:

@@ -14,7 +14,7 @@ from pagd.dataset.sampling import METHODS, Method, unit_points
 from pagd.design import DECIMALS, GeometryRules
 from pagd.errors import InputError
 from pagd.families.interface import Actuator
-from pagd.families.registry import PNEUNET, name_of
+from pagd.families.names import PNEUNET, name_of
 
 __all__ = ["sample", "table_of"]
 
