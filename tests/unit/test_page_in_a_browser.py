@@ -127,7 +127,6 @@ def count(page: Page) -> str:
     return page.locator("#explorer-count").inner_text()
 
 
-@everywhere
 def test_all_designs_are_there(page: Page) -> None:
     assert count(page) == "12 of 12 designs"
     assert names(page) == [f"d{i}" for i in range(10)]
@@ -163,7 +162,6 @@ def test_a_column_filters_by_its_own_numbers(page: Page) -> None:
     assert points(page) == ["d10", "d11", "d9"]
 
 
-@everywhere
 def test_brushing_selects_rows_and_brings_them_first(page: Page) -> None:
     # Bending grows with the number of a design: the right third of the plot.
     brush(page, 0.7, 0.02, 0.98, 0.98)
@@ -177,7 +175,6 @@ def test_brushing_selects_rows_and_brings_them_first(page: Page) -> None:
     assert names(page)[0] == "d0"
 
 
-@everywhere
 def test_a_row_marks_its_point(page: Page) -> None:
     page.locator("#explorer-table tbody tr", has_text="d5").locator("td").nth(1).click()
     page.wait_for_function("document.querySelector('#explorer-count').textContent.includes('1 s')")
@@ -229,7 +226,6 @@ def test_a_click_on_a_name_opens_the_card_and_marks_nothing(page: Page) -> None:
     assert '"status": "ok"' in card.locator(".stage pre:visible").inner_text()
 
 
-@everywhere
 def test_the_slider_sets_the_pressure_of_the_shape(page: Page) -> None:
     card = opened(page, "d0")
     card.locator(".shape canvas").first.wait_for()
