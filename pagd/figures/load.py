@@ -39,6 +39,7 @@ __all__ = [
     "load_records",
     "load_states",
     "load_trajectory",
+    "records_of",
     "stl_paths",
 ]
 
@@ -116,6 +117,14 @@ def load_records(folder: Path) -> dict[str, Record]:
     """Return the records of a design's stages that there are, by stage, in order."""
     paths = {stage: folder / stage for stage in STAGES}
     return {s: read_record(p) for s, p in paths.items() if (p / RECORD_NAME).is_file()}
+
+
+def records_of(folder: Path) -> list[Record]:
+    """Return the records of a design's stages, in order; InputError if there is none."""
+    found = list(load_records(folder).values())
+    if not found:
+        raise InputError(f"{folder}: holds no folder of a stage with a record.json.")
+    return found
 
 
 def load_design(folder: Path) -> Design | Actuator | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from pagd.errors import InputError, StageFailure
 from pagd.export import write_csv, write_step
-from pagd.figures.load import STAGES, load_records, stl_paths
+from pagd.figures.load import STAGES, records_of, stl_paths
 from pagd.figures.page.cards import CARD_NAME, write_card
 from pagd.geometry import openscad_version, parts_of_model, render_model
 from pagd.inventory import damages, sha256_of
@@ -61,9 +61,7 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     InputError
         If the folder holds no stage of a design.
     """
-    upstream = list(load_records(design).values())
-    if not upstream:
-        raise InputError(f"{design}: holds no folder of a stage with a record.json.")
+    upstream = records_of(design)
 
     files = _files(design, config["geometry"]["time_limit_s"])
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pagd.errors import InputError
 from pagd.figures.blocked import draw_blocked_force
 from pagd.figures.contact import draw_contact
 from pagd.figures.deformed import draw_deformed
@@ -16,7 +15,7 @@ from pagd.figures.load import (
     has_contact,
     has_history,
     has_states,
-    load_records,
+    records_of,
     stl_paths,
 )
 from pagd.figures.mesh import draw_mesh
@@ -45,9 +44,7 @@ def run(design: Path, out: Path, config: Mapping[str, Any]) -> Record:
     config
         Completed configuration; uses ``figures.resolution_dpi``.
     """
-    upstream = list(load_records(design).values())
-    if not upstream:
-        raise InputError(f"{design}: holds no folder of a stage with a record.json.")
+    upstream = records_of(design)
 
     resolution = config["figures"]["resolution_dpi"]
 
